@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
+#include <string>
+
+#include "base/error.h"
+
+namespace sightbound {
+
+namespace {
+constexpr int kMaxThreads = 1024;
+
+int thread_count(int threads) {
+  if (threads < 0 || threads > kMaxThreads) {
+    throw InvalidInput("threads is " + std::to_string(threads) + "; give 0 (all cores) to " +
+                       std::to_string(kMaxThreads) + ".");
+  }
+  return threads > 0 ? threads : tbb::this_task_arena::max_concurrency();
+}
+}  // namespace
+
+struct Workers::Arena {
+  explicit Arena(int threads) : arena(threads) {}
+  tbb::task_arena arena;
+};
+
+Workers::Workers(int threads) : count_(thread_count(threads)), arena_(std::make_unique<Arena>(count_)) {}
+
+Workers::~Workers() = default;
+
+void Workers::for_each(std::size_t n, const std::function<void(std::size_t)>& f) const {
+  if (count_ == 1) {
+    for (std::size_t i = 0; i < n; ++i) f(i);
+    return;
+  }
+  arena_->arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, n, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) f(i);
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+}  // namespace sightbound

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The error model resolved on one window of a DEM: what sight and the error surfaces compute with.
+//
+// Both parts of sigma are linear on each triangle between the values at the samples; the geologic part is scaled by
+// a function of the distance to the nearest sample.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "earth/georeference.h"
+#include "error_model/error_model.h"
+#include "terrain/grid.h"
+
+namespace sightbound {
+
+// How the between-sample error grows with the distance d (metres) to the nearest sample: 0 at a sample.
+struct GrowthProfile {
+  GeologicShape shape = GeologicShape::kGaussian;
+  double range_m = 0;        // 0 = the paper's f(Delta) = Delta^2
+  double exponent = 1;       // kGrowth
+  double half_spacing_m = 1; // kGrowth: L / 2
+
+  // 1 - P(d). `amplitude` = Delta / z(0.95) at the place, metres (used by the paper's f(Delta) only).
+  double operator()(double d, double amplitude) const;
+};
+
+// A value at each sample, or one for all.
+class SampleField {
+ public:
+  SampleField() = default;
+  explicit SampleField(float constant) : constant_(constant) {}
+  explicit SampleField(Grid<float> values) : values_(std::move(values)) {}
+
+  bool is_constant() const { return values_.empty(); }
+  float constant() const { return constant_; }
+  const Grid<float>& values() const { return values_; }
+  float at(int row, int col) const { return is_constant() ? constant_ : values_.at(row, col); }
+
+ private:
+  float constant_ = 0;
+  Grid<float> values_;
+};
+
+struct ErrorField {
+  SampleField sampling;   // sigma_s, metres
+  SampleField amplitude;  // Delta / z(0.95), metres; multiply by profile(d)
+  GrowthProfile profile;
+  std::vector<CellSize> cell_sizes;  // one per row of the window
+  double larger_side_m = 0;          // L
+
+  // Largest profile value anywhere in a cell of `row` (d = half the diagonal) with the given amplitude.
+  double largest_profile(int row, double amplitude) const;
+};
+
+}  // namespace sightbound

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the user says of a DEM's error (paper section 3; design: docs/concepts/error_model.md).
+//
+//   sigma_s = sigma_v + sigma_h tan(slope)                 sampling error, Koppe
+//   sigma_g(d) = (1 - P(d)) Delta / z(0.95)                 between samples, d = distance to the nearest sample
+//   sigma = max(sigma_s + sigma_g, 1 mm)                    equation 3.5
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "terrain/grid.h"
+
+namespace sightbound {
+
+inline constexpr double kLeastSigma = 1e-3;  // metres; keeps clearance ratios finite
+
+// A raster file, aligned to the DEM by its georeference when used.
+struct RasterFile {
+  std::string path;
+  int band = 1;
+};
+// An array on the grid of the whole DEM, in the DEM's (core's) row order, metres.
+using SharedGrid = std::shared_ptr<const Grid<float>>;
+// Learn it from the DEM.
+struct FromDem {};
+using Quantity = std::variant<FromDem, double, RasterFile, SharedGrid>;
+
+enum class GeologicShape {
+  kGaussian,  // P = exp(-f d^2 / 2), f = Delta^2, or 1 / range^2 when a range is given
+  kStep,      // P = 1 below the range, else 0
+  kGrowth,    // 1 - P = (2 d / L)^H, L the larger cell side: what decimating a DEM shows
+};
+
+// Polygons that say what lies between the samples; the one under a sample counts, the largest value on overlap.
+struct TerrainTypes {
+  std::string path;    // any OGR layer, any CRS
+  std::string layer;   // empty = first
+  std::string field;   // metres, or the name of a class
+  std::map<std::string, double> table;  // class -> Delta in metres; empty = default_terrain_table()
+};
+
+struct ErrorModel {
+  Quantity vertical_rmse = FromDem{};       // sigma_v, metres (one standard deviation)
+  double horizontal_rmse = 0;               // sigma_h, metres (one standard deviation of the position along one axis)
+  Quantity geologic_variation = FromDem{};  // Delta, metres: the largest rise between samples, at 95 %
+  GeologicShape geologic_shape = GeologicShape::kGaussian;
+  std::optional<double> geologic_range;     // metres
+  std::optional<double> growth_exponent;    // H, for kGrowth
+  std::optional<TerrainTypes> terrain_types;
+
+  // Throws InvalidInput naming field, value and allowed range.
+  void validate() const;
+  // True when something is still to be learnt from the DEM (estimate.h).
+  bool needs_estimate() const;
+
+  // Rasters stay paths; arrays cannot be written (InvalidInput).
+  std::string to_json() const;
+  static ErrorModel from_json(const std::string& text);
+};
+
+// Accuracy as people have it, converted once: RMSE as it is, LE90 / 1.6449, LE95 / 1.9600 (vertical, normal);
+// CE90 / 2.1460, CE95 / 2.4477 (horizontal, radial: Rayleigh). `horizontal_rmse` is already along one axis.
+enum class VerticalMeasure { kRmse, kLe90, kLe95 };
+enum class HorizontalMeasure { kRmse, kCe90, kCe95 };
+double vertical_sigma(double value_m, VerticalMeasure measure);
+double horizontal_sigma(double value_m, HorizontalMeasure measure);
+
+// Delta by class of terrain for samples a few metres apart (paper section 3.2: grassland 0.5 m, craggy 4 m).
+const std::map<std::string, double>& default_terrain_table();
+
+// Two-sided normal quantile: 0.95 -> 1.95996. Throws InvalidInput outside (0, 1).
+double two_sided_quantile(double confidence);
+// Probability that a standard normal variable is below k.
+double normal_cdf(double k);
+
+}  // namespace sightbound
