@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Confidence viewshed: how sure is it that each cell of a DEM is seen from the observers?"""
+
+from dataclasses import dataclass
+
+from qgis.core import (
+    QgsProcessing,
+    QgsProcessingOutputNumber,
+    QgsProcessingOutputString,
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFolderDestination,
+    QgsProcessingParameterRasterDestination,
+)
+
+from .. import observers
+from .. import parameters as blocks
+from ..defaults import default
+from ..error_block import check_error_block, log_error_model, read_error_block
+from ..errors import core_errors
+from ..feedback import Progress
+from ..observer_outputs import write_observer_rasters, write_observer_table
+from ..rasters import creation_options, read_extent, read_raster
+from ..styling import style_when_loaded
+from ..text import tr
+from ..values import given, word
+from .base import SightboundAlgorithm
+
+# output, label, argument of result.write, style, fit the ramp to the values, optional, made unless asked not to
+RASTERS = (
+    ("OUTPUT", "Confidence", "confidence", "confidence", False, False, True),
+    ("OUTPUT_VERDICT", "Verdict", "verdict", "verdict", False, True, True),
+    ("OUTPUT_COUNT", "Number of observers that surely see", "count", "count", True, True, False),
+    ("OUTPUT_HEIGHT", "Lowest visible height, certain", "height", "height", True, True, False),
+    ("OUTPUT_HEIGHT_LIKELY", "Lowest visible height, likely", "likely_height", "height", True, True, False),
+)
+NUMBERS = (
+    ("AREA_VISIBLE", "Area visible (m²)", "visible_m2"),
+    ("AREA_UNCERTAIN", "Area uncertain (m²)", "uncertain_m2"),
+    ("AREA_HIDDEN", "Area hidden (m²)", "hidden_m2"),
+    ("SHARE_VISIBLE", "Share visible", "visible_share"),
+    ("SHARE_UNCERTAIN", "Share uncertain", "uncertain_share"),
+    ("SHARE_HIDDEN", "Share hidden", "hidden_share"),
+)
+
+
+@dataclass
+class Job:
+    """What was read in the main thread."""
+
+    dem: object
+    vertical_unit: str
+    ground: object
+    error: object
+    places: list
+    source: object  # of OBSERVERS; None for a single OBSERVER
+    arguments: dict  # of the core's viewshed, all but the DEM, the observers and what only a run knows
+    options: list
+
+
+class ConfidenceViewshed(SightboundAlgorithm):
+    NAME = "confidenceviewshed"
+    TITLE = "Confidence viewshed"
+    SUMMARY = "How sure is it that each cell is seen, given the error of the elevation model?"
+    TAGS = (
+        "viewshed",
+        "visibility",
+        "visible",
+        "line of sight",
+        "los",
+        "intervisibility",
+        "uncertainty",
+        "error",
+        "confidence",
+        "probability",
+        "observer",
+        "dem",
+        "terrain",
+    )
+
+    def initAlgorithm(self, configuration=None):
+        combine = blocks.choice("COMBINE", tr("Combine observers"), ["best", "worst"], default("combine"))
+        for parameter in (
+            blocks.dem_block()
+            + blocks.observers_block()
+            + [blocks.confidence_parameter(), combine]
+            + blocks.error_block()
+            + blocks.limits_block()
+            + blocks.sight_block()
+            + [blocks.extent_parameter()]
+            + blocks.run_block()
+        ):
+            self.add(parameter)
+        for name, label, _, _, _, optional, by_default in RASTERS:
+            self.add(QgsProcessingParameterRasterDestination(name, tr(label)), optional, by_default)
+        table = QgsProcessingParameterFeatureSink(
+            "OUTPUT_OBSERVERS", tr("Observers with areas"), QgsProcessing.SourceType.TypeVectorPoint
+        )
+        self.add(table, optional=True, by_default=False)
+        folder = QgsProcessingParameterFolderDestination(
+            "OUTPUT_FOLDER", tr("Folder for one raster per observer")
+        )
+        self.add(folder, optional=True, by_default=False)
+        for name, label, _ in NUMBERS:
+            self.addOutput(QgsProcessingOutputNumber(name, tr(label)))
+        self.addOutput(QgsProcessingOutputString("ERROR_MODEL_USED", tr("Error model used (JSON)")))
+
+    def contradiction(self, parameters, context):
+        return (
+            self.bad_confidence(parameters, context)
+            or observers.check_observers(parameters)
+            or check_error_block(self, parameters, context)
+        )
+
+    def read(self, parameters, context, feedback):
+        dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
+        places, source = observers.read_observers(self, parameters, context, dem)
+        self.job = Job(
+            dem=dem,
+            vertical_unit=word(self, parameters, "VERTICAL_UNIT", context),
+            ground=read_raster(self, parameters, "GROUND", context, feedback),
+            error=read_error_block(self, parameters, context, feedback, dem),
+            places=places,
+            source=source,
+            arguments=self._arguments(parameters, context, dem, places),
+            options=creation_options(self, parameters, context),
+        )
+
+    def _arguments(self, parameters, context, dem, places):
+        heights = given(parameters, "OUTPUT_HEIGHT") or given(parameters, "OUTPUT_HEIGHT_LIKELY")
+        return {
+            **observers.core_arguments(places),
+            "confidence": self.parameterAsDouble(parameters, "CONFIDENCE", context),
+            "refraction": self.parameterAsDouble(parameters, "REFRACTION", context),
+            "curvature": self.parameterAsBoolean(parameters, "CURVATURE", context),
+            "stand": word(self, parameters, "STAND", context),
+            "combine": word(self, parameters, "COMBINE", context),
+            "height_reference": word(self, parameters, "HEIGHT_REFERENCE", context),
+            "see_across_nodata": self.parameterAsBoolean(parameters, "SEE_ACROSS_NODATA", context),
+            "extent": read_extent(self, parameters, context, dem),
+            "heights": heights,
+            "threads": self.threads(parameters, context),
+        }
+
+    def run(self, sightbound, parameters, context, feedback):
+        job = self.job
+        with core_errors("INPUT"):
+            dem = sightbound.read_dem(job.dem.path, band=job.dem.band, vertical_unit=job.vertical_unit)
+        arguments = dict(job.arguments, error_model=job.error.model(sightbound))
+        if job.ground is not None:
+            arguments["ground"] = job.ground.path
+        spots = [(place.x, place.y) for place in job.places]
+        rasters_too = given(parameters, "OUTPUT_FOLDER")
+        with observers.named(job.places, "OBSERVERS" if job.source else "OBSERVER"):
+            progress = Progress(feedback, 0.0, 50.0 if rasters_too else 95.0)
+            result = sightbound.viewshed(dem, spots, progress=progress, **arguments)
+            self._log(result.report, feedback)
+            results = {}
+            if rasters_too:
+                results["OUTPUT_FOLDER"] = write_observer_rasters(
+                    self, sightbound, dem, job, arguments, parameters, context, feedback
+                )
+        feedback.setProgressText(tr("Writing"))
+        results.update(self._write(result, parameters, context))
+        if given(parameters, "OUTPUT_OBSERVERS"):
+            results["OUTPUT_OBSERVERS"] = write_observer_table(self, job, result.report, parameters, context)
+        results.update({name: result.report[key] for name, _, key in NUMBERS})
+        results["ERROR_MODEL_USED"] = result.report["error_model"]
+        feedback.setProgress(100.0)
+        return results
+
+    def _log(self, report, feedback):
+        log_error_model(feedback, report["error_model"])
+        for warning in report["warnings"]:
+            feedback.pushWarning(warning)
+        for name, label, key in NUMBERS:
+            feedback.pushInfo(f"{tr(label)}: {report[key]:.6g}")
+
+    def _write(self, result, parameters, context):
+        paths, styles = {}, {}
+        for name, _, argument, style, stretch, _, _ in RASTERS:
+            if given(parameters, name):
+                path = self.parameterAsOutputLayer(parameters, name, context)
+                paths[name] = path
+                styles[path] = (style, stretch)
+        arguments = {argument: paths[name] for name, _, argument, *_ in RASTERS if name in paths}
+        with core_errors("OUTPUT"):
+            result.write(**arguments, creation_options=self.job.options)
+        for path, (style, stretch) in styles.items():
+            style_when_loaded(context, path, style, stretch)
+        return paths

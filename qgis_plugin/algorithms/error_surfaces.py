@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Error surfaces: one standard deviation of the terrain's error, and the surfaces it lies between."""
+
+from pathlib import Path
+
+from qgis.core import (
+    QgsProcessingOutputString,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingParameterRasterDestination,
+)
+
+from .. import parameters as blocks
+from ..error_block import check_error_block, log_error_model, read_error_block
+from ..errors import core_errors
+from ..feedback import Progress
+from ..rasters import creation_options, read_extent, read_raster
+from ..styling import style_when_loaded
+from ..text import tr
+from ..values import given, word
+from .base import SightboundAlgorithm
+
+# output, label, argument of write, style
+RASTERS = (
+    ("OUTPUT_SIGMA", "Sigma: one standard deviation of the error (m)", "sigma", "sigma"),
+    ("OUTPUT_LOWER", "Lower surface", "lower", "surface"),
+    ("OUTPUT_UPPER", "Upper surface", "upper", "surface"),
+)
+
+
+class ErrorSurfaces(SightboundAlgorithm):
+    NAME = "errorsurfaces"
+    TITLE = "Error surfaces"
+    SUMMARY = "How wrong may the elevation model be, and between which surfaces does the true terrain lie?"
+    TAGS = (
+        "error",
+        "uncertainty",
+        "accuracy",
+        "rmse",
+        "le90",
+        "sigma",
+        "confidence",
+        "dem",
+        "terrain",
+        "envelope",
+    )
+
+    def initAlgorithm(self, configuration=None):
+        for parameter in (
+            blocks.dem_block()
+            + [blocks.confidence_parameter()]
+            + blocks.error_block()
+            + [blocks.vertical_unit_parameter(), blocks.extent_parameter()]
+            + blocks.run_block()
+        ):
+            self.add(parameter)
+        for name, label, *_ in RASTERS:
+            self.add(
+                QgsProcessingParameterRasterDestination(name, tr(label)), optional=name != "OUTPUT_SIGMA"
+            )
+        recipe = QgsProcessingParameterFileDestination(
+            "OUTPUT_MODEL", tr("Error model file"), "JSON (*.json)"
+        )
+        self.add(recipe, optional=True, by_default=False)
+        self.addOutput(QgsProcessingOutputString("ERROR_MODEL_USED", tr("Error model used (JSON)")))
+
+    def contradiction(self, parameters, context):
+        return self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
+
+    def read(self, parameters, context, feedback):
+        self.dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
+        self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
+        self.error = read_error_block(self, parameters, context, feedback, self.dem)
+        self.extent = read_extent(self, parameters, context, self.dem)
+        self.options = creation_options(self, parameters, context)
+
+    def run(self, sightbound, parameters, context, feedback):
+        with core_errors("INPUT"):
+            dem = sightbound.read_dem(self.dem.path, band=self.dem.band, vertical_unit=self.vertical_unit)
+        surfaces = sightbound.error_surfaces(
+            dem,
+            error_model=self.error.model(sightbound),
+            confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
+            extent=self.extent,
+            threads=self.threads(parameters, context),
+            progress=Progress(feedback, 0.0, 90.0),
+        )
+        used = surfaces.report["error_model"]
+        log_error_model(feedback, used)
+        for warning in surfaces.report["warnings"]:
+            feedback.pushWarning(warning)
+        results = {"ERROR_MODEL_USED": used}
+        paths = {}
+        for name, _, argument, _ in RASTERS:
+            if given(parameters, name):
+                paths[argument] = results[name] = self.parameterAsOutputLayer(parameters, name, context)
+        with core_errors("OUTPUT_SIGMA"):
+            surfaces.write(**paths, creation_options=self.options)
+        for name, _, argument, style in RASTERS:
+            if argument in paths:
+                style_when_loaded(context, paths[argument], style, stretch=True)
+        if given(parameters, "OUTPUT_MODEL"):
+            results["OUTPUT_MODEL"] = self.parameterAsFileOutput(parameters, "OUTPUT_MODEL", context)
+            Path(results["OUTPUT_MODEL"]).write_text(used, encoding="utf-8")
+        feedback.setProgress(100.0)
+        return results

@@ -1,0 +1,27 @@
+<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
+<qgis version="3.22" styleCategories="Symbology">
+  <pipe>
+    <rasterrenderer type="singlebandpseudocolor" band="1" classificationMin="0" classificationMax="1" opacity="1" alphaBand="-1" nodataColor="">
+      <rastershader>
+        <colorrampshader colorRampType="INTERPOLATED" classificationMode="1" clip="0" minimumValue="0" maximumValue="1" labelPrecision="2">
+          <colorramp type="gradient" name="[source]">
+            <Option type="Map">
+              <Option name="color1" type="QString" value="38,38,38,255"/>
+              <Option name="color2" type="QString" value="242,242,242,255"/>
+              <Option name="discrete" type="QString" value="0"/>
+              <Option name="rampType" type="QString" value="gradient"/>
+              <Option name="stops" type="QString" value="0.5;140,140,140,255"/>
+            </Option>
+          </colorramp>
+            <item value="0" label="0" color="#262626" alpha="255"/>
+            <item value="0.5" label="0.5" color="#8c8c8c" alpha="255"/>
+            <item value="1" label="1" color="#f2f2f2" alpha="255"/>
+        </colorrampshader>
+      </rastershader>
+    </rasterrenderer>
+    <brightnesscontrast brightness="0" contrast="0" gamma="1"/>
+    <huesaturation grayscaleMode="0" saturation="0" colorizeOn="0"/>
+    <rasterresampler zoomedInResampler="" zoomedOutResampler="" maxOversampling="2"/>
+  </pipe>
+  <blendMode>0</blendMode>
+</qgis>

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Styles outputs when QGIS loads them, with the QML files that lie in styles/."""
+
+from pathlib import Path
+
+from qgis.core import (
+    QgsProcessingLayerPostProcessorInterface,
+    QgsRasterBandStats,
+    QgsRasterLayer,
+    QgsSingleBandPseudoColorRenderer,
+)
+
+_STYLES = Path(__file__).parent / "styles"
+
+
+def style_path(style):
+    return str(_STYLES / f"{style}.qml")
+
+
+class StyleOnLoad(QgsProcessingLayerPostProcessorInterface):
+    """Gives a loaded layer a style. `stretch` fits the colour ramp to the layer's own least and largest value.
+
+    QGIS keeps no reference: the instances live in this class.
+    """
+
+    _alive = {}
+
+    @classmethod
+    def of(cls, style, stretch=False):
+        key = (style, stretch)
+        if key not in cls._alive:
+            cls._alive[key] = cls(style, stretch)
+        return cls._alive[key]
+
+    def __init__(self, style, stretch):
+        super().__init__()
+        self.style = style
+        self.stretch = stretch
+
+    def postProcessLayer(self, layer, context, feedback):
+        message, loaded = layer.loadNamedStyle(style_path(self.style))
+        if not loaded:
+            feedback.pushWarning(message)
+        if self.stretch and isinstance(layer, QgsRasterLayer):
+            stretch_ramp(layer)
+        layer.triggerRepaint()
+
+
+def stretch_ramp(layer):
+    """Moves the stops of the layer's colour ramp, in proportion, to span the values that the layer holds."""
+    renderer = layer.renderer()
+    if not isinstance(renderer, QgsSingleBandPseudoColorRenderer):
+        return
+    wanted = QgsRasterBandStats.Stats.Min | QgsRasterBandStats.Stats.Max
+    found = layer.dataProvider().bandStatistics(1, wanted, layer.extent(), 250000)
+    shader = renderer.shader().rasterShaderFunction()
+    low, high = shader.minimumValue(), shader.maximumValue()
+    least, largest = found.minimumValue, found.maximumValue
+    if not largest > least or not high > low:
+        return
+    items = shader.colorRampItemList()
+    for item in items:
+        item.value = least + (item.value - low) / (high - low) * (largest - least)
+        item.label = f"{item.value:.4g}"
+    shader.setColorRampItemList(items)
+    shader.setMinimumValue(least)
+    shader.setMaximumValue(largest)
+    renderer.setClassificationMin(least)
+    renderer.setClassificationMax(largest)
+
+
+def style_when_loaded(context, output, style, stretch=False):
+    """Asks QGIS to style `output` (a path or a sink's id) if it will be loaded."""
+    if context.willLoadLayerOnCompletion(output):
+        details = context.layerToLoadOnCompletionDetails(output)
+        details.setPostProcessor(StyleOnLoad.of(style, stretch))

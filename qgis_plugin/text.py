@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What users read: translation, and the help texts that lie in help/."""
+
+import json
+from functools import lru_cache
+from pathlib import Path
+
+from qgis.PyQt.QtCore import QCoreApplication
+
+_HELP = Path(__file__).parent / "help"
+
+
+def tr(sentence):
+    return QCoreApplication.translate("Sightbound", sentence)
+
+
+@lru_cache(maxsize=None)
+def _parameter_texts():
+    return json.loads((_HELP / "parameters.json").read_text(encoding="utf-8"))
+
+
+def parameter_help(algorithm, parameter):
+    """The help of a parameter; `algorithm.PARAMETER` goes before the shared text of `PARAMETER`."""
+    texts = _parameter_texts()
+    return tr(texts.get(f"{algorithm}.{parameter}", texts.get(parameter, "")))
+
+
+@lru_cache(maxsize=None)
+def algorithm_help(algorithm):
+    return tr((_HELP / f"{algorithm}.html").read_text(encoding="utf-8"))
