@@ -2,10 +2,11 @@
 // The error model resolved on one window of a DEM: what sight and the error surfaces compute with.
 //
 // Both parts of sigma are linear on each triangle between the values at the samples; the geologic part is scaled by
-// a function of the distance to the nearest sample.
+// a function of the distance to the nearest sample. Values are finite and >= 0 everywhere, nodata samples included.
 #pragma once
 
-#include <span>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "earth/georeference.h"
@@ -21,7 +22,8 @@ struct GrowthProfile {
   double exponent = 1;       // kGrowth
   double half_spacing_m = 1; // kGrowth: L / 2
 
-  // 1 - P(d). `amplitude` = Delta / z(0.95) at the place, metres (used by the paper's f(Delta) only).
+  // 1 - P(d), by definition: other implementations are tested against this one. Never falls as d grows.
+  // `amplitude` = Delta / z(0.95) at the place, metres (used by the paper's f(Delta) only).
   double operator()(double d, double amplitude) const;
 };
 
@@ -36,6 +38,7 @@ class SampleField {
   float constant() const { return constant_; }
   const Grid<float>& values() const { return values_; }
   float at(int row, int col) const { return is_constant() ? constant_ : values_.at(row, col); }
+  Grid<float> release() { return std::move(values_); }  // leaves the constant behind
 
  private:
   float constant_ = 0;
@@ -46,11 +49,14 @@ struct ErrorField {
   SampleField sampling;   // sigma_s, metres
   SampleField amplitude;  // Delta / z(0.95), metres; multiply by profile(d)
   GrowthProfile profile;
-  std::vector<CellSize> cell_sizes;  // one per row of the window
+  std::vector<CellSize> cell_sizes;  // one per row of the window, at the DEM's middle column (so that windows agree)
+  std::vector<double> farthest;      // one per row: the largest distance to the sample within its cell, metres
   double larger_side_m = 0;          // L
 
-  // Largest profile value anywhere in a cell of `row` (d = half the diagonal) with the given amplitude.
-  double largest_profile(int row, double amplitude) const;
+  // Largest profile value anywhere in a cell of `row` with that amplitude.
+  double largest_profile(int row, double amplitude_there) const {
+    return profile(farthest[static_cast<std::size_t>(row)], amplitude_there);
+  }
 };
 
 }  // namespace sightbound

@@ -11,6 +11,7 @@
 
 #include "base/progress.h"
 #include "error_model/error_model.h"
+#include "jobs/windows.h"
 #include "terrain/dem.h"
 
 namespace sightbound {
@@ -32,10 +33,6 @@ struct Observer {
   double azimuth_from = 0, azimuth_to = 360;   // degrees clockwise from true north
   double angle_from = -90, angle_to = 90;      // degrees above the observer's horizontal
   std::string name;                 // for messages; empty = its number
-};
-
-struct Extent {
-  double x_min = 0, y_min = 0, x_max = 0, y_max = 0;  // in the DEM's CRS
 };
 
 struct ViewshedOptions {

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Method. At each sample and for q = 1, 2 (spacing 2q; the sample lies half a spacing from its neighbours):
+//
+//   e_q = z - (z before + z after) / 2, neighbours q away along the row, the column and the NW-SE diagonal
+//
+// H comes from rows and columns alone, at the same places for both q; the diagonal, sqrt2 times as far, joins in
+// afterwards as e / sqrt2^H. The same three residuals make the local map (local_variation.h).
+#include "error_model/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+
+#include "error_model/rounding.h"
+
+namespace sightbound {
+
+namespace {
+
+constexpr std::size_t kEnough = 1000;      // places; with fewer, further blocks are read
+constexpr std::size_t kFewest = 64;        // places that H may be measured on
+constexpr double kUsualExponent = 1;       // bare earth: median 1.0-1.1 of sixteen lidar terrains
+constexpr double kLeastExponent = 0.1, kLargestExponent = 2;
+constexpr float kHighest = 1e5f;           // metres; no height on Earth, but a spike or an undeclared nodata value
+
+struct Residuals {
+  std::size_t places = 0, near_places = 0;    // with both q; with q = 1
+  double edge = 0, edge_far = 0, diagonal = 0;  // sums of squares at `places`
+  double near_edge = 0, near_diagonal = 0;      // at `near_places`
+  double highest = 0;                           // absolute height of those blocks
+};
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof(buffer), "%.2f", value);
+  return buffer;
+}
+
+// Doubled residual of the sample at `z` from neighbours `offset` away on both sides.
+double residual(const float* z, std::ptrdiff_t offset) {
+  return (static_cast<double>(*z) - z[-offset]) + (static_cast<double>(*z) - z[offset]);
+}
+
+void add_place(const float* z, std::ptrdiff_t stride, bool far_known, Residuals& sums) {
+  const double row = residual(z, 1), col = residual(z, stride), diagonal = residual(z, stride + 1);
+  const double edge = (row * row + col * col) / 8, along_diagonal = diagonal * diagonal / 4;
+  if (std::isnan(edge + along_diagonal)) return;
+  ++sums.near_places;
+  sums.near_edge += edge;
+  sums.near_diagonal += along_diagonal;
+  if (!far_known) return;
+  const double row_far = residual(z, 2), col_far = residual(z, 2 * stride);
+  const double edge_far = (row_far * row_far + col_far * col_far) / 8;
+  if (std::isnan(edge_far)) return;
+  ++sums.places;
+  sums.edge += edge;
+  sums.edge_far += edge_far;
+  sums.diagonal += along_diagonal;
+}
+
+void add_block(const Grid<float>& block, Residuals& sums) {
+  const int rows = block.rows(), cols = block.cols();
+  for (int r = 1; r < rows - 1; ++r) {
+    const bool row_far = r >= 2 && r < rows - 2;
+    for (int c = 1; c < cols - 1; ++c) {
+      add_place(block.row(r) + c, cols, row_far && c >= 2 && c < cols - 2, sums);
+    }
+  }
+}
+
+void drop_spikes(Grid<float>& block, Residuals& sums) {
+  for (float& z : block.values()) {
+    if (std::abs(z) > kHighest) z = std::numeric_limits<float>::quiet_NaN();
+    if (z == z) sums.highest = std::max(sums.highest, std::abs(static_cast<double>(z)));
+  }
+}
+
+// Windows (core's row order) on a lattice anchored to the file's first row and column: the spread ones first, then the rest.
+class Blocks {
+ public:
+  explicit Blocks(const DemSource& source) : rows_(source.rows()), cols_(source.cols()), flipped_(source.flipped()) {
+    constexpr int kSide = kEstimateBlockSide;
+    constexpr std::size_t kSmall = std::size_t{kEstimateBlocks} * kSide * kSide;
+    if (source.window().cells() <= kSmall) {
+      windows_.push_back(source.window());
+      spread_ = 1;
+      return;
+    }
+    const int down = (rows_ + kSide - 1) / kSide, across = (cols_ + kSide - 1) / kSide;
+    int take_down = std::min(down, 8);
+    const int take_across = std::min(across, kEstimateBlocks / take_down);
+    take_down = std::min(down, kEstimateBlocks / take_across);
+    std::vector<char> taken(static_cast<std::size_t>(down) * static_cast<std::size_t>(across));
+    for (int i = 0; i < take_down; ++i) {
+      for (int j = 0; j < take_across; ++j) {
+        const int r = middle(i, take_down, down), c = middle(j, take_across, across);
+        taken[static_cast<std::size_t>(r) * static_cast<std::size_t>(across) + static_cast<std::size_t>(c)] = 1;
+        windows_.push_back(tile(r, c));
+      }
+    }
+    spread_ = windows_.size();
+    for (int r = 0; r < down; ++r) {
+      for (int c = 0; c < across; ++c) {
+        if (!taken[static_cast<std::size_t>(r) * static_cast<std::size_t>(across) + static_cast<std::size_t>(c)]) {
+          windows_.push_back(tile(r, c));
+        }
+      }
+    }
+  }
+
+  const std::vector<Window>& windows() const { return windows_; }
+  std::size_t spread() const { return spread_; }
+
+ private:
+  // Tile at the middle of the i-th of n equal parts.
+  static int middle(int i, int n, int tiles) { return static_cast<int>((2LL * i + 1) * tiles / (2LL * n)); }
+
+  Window tile(int r, int c) const {
+    constexpr int kSide = kEstimateBlockSide;
+    Window w{c * kSide, r * kSide, 0, 0};
+    w.cols = std::min(kSide, cols_ - w.col);
+    w.rows = std::min(kSide, rows_ - w.row);
+    if (flipped_) w.row = rows_ - w.row_end();
+    return w;
+  }
+
+  int rows_, cols_;
+  bool flipped_;
+  std::vector<Window> windows_;
+  std::size_t spread_ = 0;
+};
+
+void judge_growth(const Residuals& sums, Estimate& out) {
+  const auto places = static_cast<double>(sums.places);
+  out.edge_ms = sums.edge / places;
+  out.diagonal_ms = sums.diagonal / places;
+  const double float_noise = std::numeric_limits<float>::epsilon() * sums.highest;
+  if (std::sqrt(out.edge_ms) <= float_noise) {
+    out.edge_ms = out.diagonal_ms = 0;
+    out.warnings.push_back("The DEM is flat or one plane as far as looked at: nothing can be learnt of what lies between its "
+                           "samples, and the error between them is taken as 0. If it is not flat in truth, give vertical_rmse "
+                           "and geologic_variation.");
+    return;
+  }
+  const double exponent = 0.5 * std::log2(sums.edge_far / sums.edge);
+  out.growth_exponent = std::clamp(exponent, kLeastExponent, kLargestExponent);
+  if (exponent > kOversampledExponent) {
+    out.warnings.push_back("The DEM is smoother than its cell size (growth exponent H = " + text(exponent) +
+                           "): it was probably resampled from a coarser one, or smoothed, and does not show the ground as finely as "
+                           "its cells suggest. The estimated error is too small; give vertical_rmse and geologic_variation.");
+  }
+}
+
+void judge_few(const Residuals& sums, Estimate& out) {
+  out.growth_exponent = kUsualExponent;
+  if (sums.near_places > 0) {
+    const auto places = static_cast<double>(sums.near_places);
+    out.edge_ms = sums.near_edge / places;
+    out.diagonal_ms = sums.near_diagonal / places;
+  }
+  out.warnings.push_back("The DEM has only " + std::to_string(sums.places) + " places to measure its error at (needed: " +
+                         std::to_string(kFewest) + "), because it is small or full of holes. The growth of the error is "
+                         "taken as usual for bare earth (H = 1) and its size from " + std::to_string(sums.near_places) +
+                         " places; better give vertical_rmse and geologic_variation.");
+}
+
+}  // namespace
+
+double Estimate::typical_with(double exponent) const {
+  const double growth = std::exp2(-exponent);
+  return growth * std::sqrt((2 * edge_ms + growth * diagonal_ms) / 3);
+}
+
+Estimate estimate(const DemSource& source, Progress& progress) {
+  Residuals sums;
+  RoundingDetector rounding;
+  const Blocks blocks(source);
+  for (std::size_t i = 0; i < blocks.windows().size(); ++i) {
+    if (i >= blocks.spread() && sums.places >= kEnough) break;
+    progress.check();
+    Grid<float> block = source.read(blocks.windows()[i], progress);
+    drop_spikes(block, sums);
+    add_block(block, sums);
+    rounding.add(block);
+  }
+  Estimate out;
+  if (sums.places >= kFewest) {
+    judge_growth(sums, out);
+  } else {
+    judge_few(sums, out);
+  }
+  out.typical_m = out.typical_with(out.growth_exponent);
+  out.rounding_m = rounding.sd_m();
+  return out;
+}
+
+ErrorModel with_estimate(ErrorModel model, const Estimate& estimate) {
+  if (std::holds_alternative<FromDem>(model.vertical_rmse)) model.vertical_rmse = estimate.rounding_m;
+  if (std::holds_alternative<FromDem>(model.geologic_variation)) {
+    model.geologic_shape = GeologicShape::kGrowth;
+    if (!model.growth_exponent) model.growth_exponent = estimate.growth_exponent;
+    if (!model.typical_m) model.typical_m = estimate.typical_with(*model.growth_exponent);
+  }
+  return model;
+}
+
+}  // namespace sightbound
