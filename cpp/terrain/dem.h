@@ -31,13 +31,14 @@ class DemSource {
   // Heights of a window in metres, NaN where there are none. Safe to call from one thread at a time.
   virtual Grid<float> read(const Window&, Progress&) const = 0;
 
-  // What was assumed or converted on the way (vertical unit, missing CRS, suspicious values), for the report.
+  // What was assumed or converted on the way (vertical unit, missing CRS, suspicious values), for the report. Reading may
+  // add to them: ask after it.
   const std::vector<std::string>& notes() const { return notes_; }
 
  protected:
   // `geotransform` is the user's; rows are flipped here when the diagonal asks for it.
   DemSource(int rows, int cols, const Geotransform& geotransform, std::string crs_wkt);
-  std::vector<std::string> notes_;
+  mutable std::vector<std::string> notes_;
 
  private:
   int rows_, cols_;
