@@ -14,7 +14,8 @@ set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
-add_compile_options(-ffp-contract=off -Wall -Wextra -Wshadow)
+# -fno-math-errno changes no value; it lets loops with a square root run in vectors.
+add_compile_options(-ffp-contract=off -fno-math-errno -Wall -Wextra -Wshadow)
 if(SIGHTBOUND_WERROR)
   add_compile_options(-Werror)
 endif()
