@@ -131,7 +131,7 @@ def _read_geologic(choice, algorithm, parameters, context, feedback, dem):
 
 
 def _polygons(algorithm, parameters, context, dem):
-    """The path of a file that holds the polygons: the layer's own, or a temporary GeoPackage in the CRS of the DEM."""
+    """The path of a file that holds the polygons: the layer's own, or a copy in the CRS of the DEM."""
     source = algorithm.parameterAsSource(parameters, "TERRAIN_TYPES", context)
     if source is None:
         raise bad_input(

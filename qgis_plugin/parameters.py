@@ -5,6 +5,8 @@ Each block is a function that returns definitions in the order of the dialog. Ra
 optional, so that a model need not mention them; an optional parameter left empty means its default.
 """
 
+from importlib.util import find_spec
+
 from qgis.core import (
     QgsProcessing,
     QgsProcessingParameterBand,
@@ -149,7 +151,7 @@ def error_block():
                 0,
                 False,
                 [tr("Terrain type"), tr("Rise in metres")],
-                [cell for row in default("terrain_table").items() for cell in row],
+                _terrain_rows(),
                 True,
             )
         ),
@@ -164,6 +166,12 @@ def error_block():
             )
         ),
     ]
+
+
+def _terrain_rows():
+    """The core's table, from the smoothest terrain to the roughest, as the matrix holds it: cell after cell."""
+    rows = sorted(default("terrain_table").items(), key=lambda row: (row[1], row[0]))
+    return [cell for row in rows for cell in row]
 
 
 def observers_block():
@@ -254,13 +262,16 @@ def run_block():
     options = QgsProcessingParameterString(
         "CREATION_OPTIONS", tr("Creation options of the GeoTIFFs"), "", False, True
     )
-    options.setMetadata(
-        {
-            "widget_wrapper": {
-                "class": "processing.algs.gdal.ui.RasterOptionsWidget.RasterOptionsWidgetWrapper",
-                "widget_type": "rasteroptions",
-            }
-        }
-    )
+    options.setMetadata({"widget_wrapper": _raster_options_widget()})
     threads = number("THREADS", tr("Threads (empty: all cores)"), None, 1, None, integer=True)
     return [advanced(threads), advanced(options)]
+
+
+def _raster_options_widget():
+    """QGIS's own widget for creation options: a Python class up to 3.40, part of C++ later."""
+    module = "processing.algs.gdal.ui.RasterOptionsWidget"
+    try:
+        found = find_spec(module) is not None
+    except ModuleNotFoundError:
+        found = False
+    return {"class": f"{module}.RasterOptionsWidgetWrapper"} if found else {"widget_type": "rasteroptions"}
