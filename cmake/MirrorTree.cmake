@@ -4,6 +4,7 @@
 #
 # Makes TO hold the files of FROM: copies what changed, removes what FROM no longer has. Files of TO whose path
 # matches KEEP stay (built there by other rules). Byte code is neither copied nor kept.
+cmake_minimum_required(VERSION 3.22)
 file(GLOB_RECURSE wanted RELATIVE "${FROM}" "${FROM}/*")
 list(FILTER wanted EXCLUDE REGEX "__pycache__|\\.pyc$|~$")
 file(GLOB_RECURSE present RELATIVE "${TO}" "${TO}/*")
