@@ -15,8 +15,8 @@ namespace sightbound {
 // Throws IoError, and InvalidInput for negative values or a raster that does not overlap the window.
 Grid<float> aligned_raster(const RasterFile&, const DemSource&, const Window&, Progress&);
 
-// Delta at the DEM's samples from polygons; NaN outside all of them. An unknown class is an InvalidInput that lists
-// those unknown and those known; an empty layer, a missing field or a NULL value is one too.
+// Delta at the DEM's samples from polygons; NaN outside all of them. An unknown class is an InvalidInput that
+// lists those unknown and those known; an empty layer, a missing field or a NULL value is one too.
 Grid<float> terrain_type_variation(const TerrainTypes&, const DemSource&, const Window&, Progress&);
 
 // class -> metres from a JSON object or a two-column CSV file.

@@ -2,8 +2,8 @@
 // Result rasters, written beside the target and renamed when whole.
 #pragma once
 
+#include <cstdint>
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -14,20 +14,23 @@
 namespace sightbound {
 
 struct RasterMetadata {
-  std::string description;                   // of the band
-  std::string unit;                          // of the band, e.g. "m"
-  std::map<std::string, std::string> items;  // dataset metadata, keys SIGHTBOUND_...
-  std::vector<std::string> creation_options; // KEY=VALUE; empty = tiled, compressed, all cores, BigTIFF when needed
+  std::string description;                    // of the band
+  std::string unit;                           // of the band, e.g. "m"
+  std::map<std::string, std::string> items;   // dataset metadata, keys SIGHTBOUND_...
+  std::vector<std::string> creation_options;  // KEY=VALUE of the GTiff driver; they win over ours (tiled,
+                                              // compressed, BigTIFF when needed)
 };
 
-// GeoTIFF; nodata NaN / 255 / 4294967295. The file appears under its name only when whole; a failure (no space, no folder,
-// cancelled) leaves nothing and keeps what stood there before. `progress` is advanced by 1 per cell.
-// Grids are in the order of `geotransform`.
-void write_raster(const std::string& path, const Grid<float>&, const Geotransform&, const std::string& crs_wkt,
-                  const RasterMetadata&, int threads, Progress&);
-void write_raster(const std::string& path, const Grid<std::uint8_t>&, const Geotransform&, const std::string& crs_wkt,
-                  const RasterMetadata&, int threads, Progress&);
-void write_raster(const std::string& path, const Grid<std::uint32_t>&, const Geotransform&, const std::string& crs_wkt,
-                  const RasterMetadata&, int threads, Progress&);
+// GeoTIFF (.tif or .tiff, or no extension); nodata NaN / 255 / 4294967295. The file appears under its name
+// only when whole; a failure (no space, no folder, cancelled) leaves nothing and keeps what stood there
+// before. Only the horizontal part of the CRS is written: the values are no heights of its vertical datum.
+// `threads` compress (0 = all cores). `progress` is advanced by 1 per cell. Grids are in the order of
+// `geotransform`. Throws IoError, InvalidInput (extension, creation options), Cancelled.
+void write_raster(const std::string& path, const Grid<float>&, const Geotransform&,
+                  const std::string& crs_wkt, const RasterMetadata&, int threads, Progress&);
+void write_raster(const std::string& path, const Grid<std::uint8_t>&, const Geotransform&,
+                  const std::string& crs_wkt, const RasterMetadata&, int threads, Progress&);
+void write_raster(const std::string& path, const Grid<std::uint32_t>&, const Geotransform&,
+                  const std::string& crs_wkt, const RasterMetadata&, int threads, Progress&);
 
 }  // namespace sightbound
