@@ -132,6 +132,16 @@ class Blocks {
   std::size_t spread_ = 0;
 };
 
+// Rounded heights add the same to the residuals of every spacing and hide the growth of what is left. A residual holds the
+// sample's own rounding and half of the sum of two others'.
+double exponent_of(const Residuals& sums, double rounding_m) {
+  constexpr double kRoundingShare = 1.5, kLeastLeft = 0.1;
+  const double places = static_cast<double>(sums.places), rounding = kRoundingShare * rounding_m * rounding_m;
+  const double near = sums.edge / places, far = sums.edge_far / places;
+  const double left = std::max(near - rounding, kLeastLeft * near);
+  return 0.5 * std::log2(std::max(far - rounding, left) / left);
+}
+
 void judge_growth(const Residuals& sums, Estimate& out) {
   const auto places = static_cast<double>(sums.places);
   out.edge_ms = sums.edge / places;
@@ -144,7 +154,7 @@ void judge_growth(const Residuals& sums, Estimate& out) {
                            "and geologic_variation.");
     return;
   }
-  const double exponent = 0.5 * std::log2(sums.edge_far / sums.edge);
+  const double exponent = exponent_of(sums, out.rounding_m);
   out.growth_exponent = std::clamp(exponent, kLeastExponent, kLargestExponent);
   if (exponent > kOversampledExponent) {
     out.warnings.push_back("The DEM is smoother than its cell size (growth exponent H = " + text(exponent) +
@@ -186,13 +196,13 @@ Estimate estimate(const DemSource& source, Progress& progress) {
     rounding.add(block);
   }
   Estimate out;
+  out.rounding_m = rounding.sd_m();
   if (sums.places >= kFewest) {
     judge_growth(sums, out);
   } else {
     judge_few(sums, out);
   }
   out.typical_m = out.typical_with(out.growth_exponent);
-  out.rounding_m = rounding.sd_m();
   return out;
 }
 
