@@ -4,6 +4,7 @@
 find_package(Threads REQUIRED)
 find_package(TBB CONFIG REQUIRED)
 find_package(GeographicLib MODULE REQUIRED)
+find_package(Eigen3 CONFIG REQUIRED)
 find_package(GDAL CONFIG REQUIRED)
 find_package(PROJ CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)

@@ -12,13 +12,12 @@
 #include "base/progress.h"
 #include "error_model/error_model.h"
 #include "jobs/windows.h"
+#include "sight/confidence.h"
 #include "terrain/dem.h"
 
 namespace sightbound {
 
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-inline constexpr std::uint8_t kHidden = 0, kUncertain = 1, kVisible = 2, kNoVerdict = 255;
-inline constexpr std::uint32_t kNoCount = 4294967295u;
 
 enum class Stand { kModel, kGround };          // are eye and target exact positions, or do they move with the unknown ground
 enum class HeightReference { kGround, kAbsolute };
@@ -62,6 +61,7 @@ struct ViewshedReport {
   double visible_m2 = 0, uncertain_m2 = 0, hidden_m2 = 0;  // of the combined verdict
   double hole_doubt_m2 = 0;       // area in doubt only because sight would cross a hole
   std::size_t memory_bytes = 0;   // planned peak
+  std::uint64_t cells_settled = 0;  // cells that needed an exact line, over all observers
   std::string error_model;        // JSON of what was used
   std::vector<std::string> warnings;
 };

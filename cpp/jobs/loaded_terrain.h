@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A window of the DEM in memory with its error resolved, ready for sight.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "earth/georeference.h"
+#include "jobs/resolve_error.h"
+#include "jobs/viewshed_job.h"
+#include "sight/scene.h"
+
+namespace sightbound {
+
+class LoadedTerrain {
+ public:
+  // `model` must be complete. Appends to `warnings`.
+  LoadedTerrain(const DemSource&, const Georeference&, const Window&, const ErrorModel& model, const ViewshedOptions&,
+                std::vector<std::string>& warnings, const Workers&, Progress&);
+  LoadedTerrain(const LoadedTerrain&) = delete;
+  LoadedTerrain& operator=(const LoadedTerrain&) = delete;
+
+  const Window& window() const { return window_; }  // in the whole raster
+  const Scene& scene() const { return *scene_; }
+  // Heights that heights above ground refer to: those of the ground raster, or the DEM's own.
+  const Grid<float>& ground() const { return ground_.empty() ? heights_ : ground_; }
+  const std::vector<double>& cell_areas() const { return cell_areas_; }  // square metres, one per row
+
+  // Bytes at its largest while loading such a window, and afterwards.
+  static ResolveMemory memory(const Window&, const ErrorModel&, const ViewshedOptions&);
+
+ private:
+  Window window_;
+  Grid<float> heights_, ground_;
+  ErrorField error_;
+  std::unique_ptr<Scene> scene_;
+  std::vector<double> cell_areas_;
+};
+
+// Interpolated on the terrain at (col, row) of the grid; NaN when a sample that counts is nodata.
+double interpolate(const Grid<float>& samples, double col, double row);
+
+}  // namespace sightbound

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "jobs/observer_place.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/error.h"
+
+namespace sightbound {
+
+namespace {
+
+constexpr double kTallest_m = 1e8;    // beyond the Moon's distance nobody stands
+constexpr double kFarthest_m = 2e7;   // half way round the Earth
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.10g", value);
+  return text;
+}
+
+void require(bool right, const std::string& name, const char* field, double value, const char* allowed) {
+  if (!right) throw InvalidInput(name + ": " + field + " is " + number(value) + "; it must be " + allowed + ".");
+}
+
+}  // namespace
+
+std::string name_of(const Observer& observer, std::size_t index) {
+  return observer.name.empty() ? "Observer " + std::to_string(index + 1) : "Observer '" + observer.name + "'";
+}
+
+void validate(const Observer& o, const std::string& name) {
+  require(std::isfinite(o.x), name, "x", o.x, "a finite number");
+  require(std::isfinite(o.y), name, "y", o.y, "a finite number");
+  require(std::abs(o.height) <= kTallest_m, name, "observer_height", o.height, "a number of metres of at most 1e8 in size");
+  require(std::abs(o.target_height) <= kTallest_m, name, "target_height", o.target_height,
+          "a number of metres of at most 1e8 in size");
+  require(o.min_distance >= 0 && std::isfinite(o.min_distance), name, "min_distance", o.min_distance, "0 metres or more");
+  require(o.max_distance > 0, name, "max_distance", o.max_distance, "more than 0 metres");
+  require(o.min_distance <= o.max_distance, name, "min_distance", o.min_distance, "no larger than max_distance");
+  require(std::isfinite(o.azimuth_from) && std::abs(o.azimuth_from) <= 720, name, "azimuth from", o.azimuth_from,
+          "between -720 and 720 degrees");
+  require(std::isfinite(o.azimuth_to) && std::abs(o.azimuth_to) <= 720, name, "azimuth to", o.azimuth_to,
+          "between -720 and 720 degrees");
+  require(o.angle_from >= -90 && o.angle_from <= 90, name, "vertical angle from", o.angle_from, "between -90 and 90 degrees");
+  require(o.angle_to >= -90 && o.angle_to <= 90, name, "vertical angle to", o.angle_to, "between -90 and 90 degrees");
+  require(o.angle_from <= o.angle_to, name, "vertical angle from", o.angle_from, "no larger than vertical angle to");
+}
+
+void validate(const ViewshedOptions& options) {
+  two_sided_quantile(options.confidence);  // throws outside (0, 1)
+  if (!(options.refraction >= -1 && options.refraction <= 1)) {
+    throw InvalidInput("refraction is " + number(options.refraction) +
+                       "; it must be between -1 and 1 (light: 0.13, radio: 0.25, none: 0).");
+  }
+}
+
+GridPlace place_on(const DemSource& source, double x, double y, const std::string& name) {
+  const Xy at = source.geotransform().to_raster(x, y);
+  if (!(at.x >= -0.5 && at.y >= -0.5 && at.x <= source.cols() - 0.5 && at.y <= source.rows() - 0.5)) {
+    throw InvalidInput(name + " at (" + number(x) + ", " + number(y) +
+                       ") lies outside the DEM. Give its position in the DEM's coordinate system, or use a DEM that covers it.");
+  }
+  // Coordinates written with a dozen digits should hit the sample they mean.
+  constexpr double kSampleSnap = 1e-7;  // cells
+  const auto snapped = [](double value, int count) {
+    value = std::clamp(value, 0.0, count - 1.0);
+    return std::abs(value - std::round(value)) < kSampleSnap ? std::round(value) : value;
+  };
+  const double col = snapped(at.x, source.cols()), row = snapped(at.y, source.rows());
+  GridPlace place;
+  place.base_col = static_cast<int>(std::floor(col));
+  place.base_row = static_cast<int>(std::floor(row));
+  place.col = col - place.base_col;
+  place.row = row - place.base_row;
+  return place;
+}
+
+Window reach_of(const DemSource& source, const Georeference& georeference, const GridPlace& place, double distance_m) {
+  const Window all = source.window();
+  if (!(distance_m < kFarthest_m)) return all;
+  // Grown until the cells' own sizes put its rim beyond the distance; cells shrink towards poles and in Mercator.
+  const double margin = 1.1;
+  const auto half = [&](double cell) { return static_cast<int>(std::min(std::ceil(margin * distance_m / cell) + 2, 2e9 / 4)); };
+  const auto smallest = [&](const Window& rows, bool along_row) {
+    double least = 1e300;
+    for (const int row : {rows.row, rows.row + rows.rows / 2, rows.row_end() - 1}) {
+      const CellSize size = ground_cell_sizes(georeference, {0, row, all.cols, 1})[0];
+      least = std::min(least, along_row ? size.col_m : size.row_m);
+    }
+    return least;
+  };
+  Window rows{0, place.base_row, 1, 1};
+  for (int pass = 0; pass < 3; ++pass) {
+    const int up = half(smallest(rows, false));
+    rows = intersection({0, place.base_row - up, 1, 2 * up + 2}, {0, 0, 1, all.rows});
+  }
+  const int across = half(smallest(rows, true));
+  return intersection({place.base_col - across, rows.row, 2 * across + 2, rows.rows}, all);
+}
+
+ObserverFrame frame_of(const Georeference& georeference, const GridPlace& place, const Window& reach) {
+  const Georeference moved = georeference.of_window({place.base_col, place.base_row, 1, 1});
+  const Window relative{reach.col - place.base_col, reach.row - place.base_row, reach.cols, reach.rows};
+  return ObserverFrame(moved, place.col, place.row, relative);
+}
+
+Window lines_window(const DemSource& source, const ObserverFrame& frame, const GridPlace& place, const Window& targets) {
+  const Window straight = bounding(targets, {place.base_col, place.base_row, 2, 2});
+  // How far lines to the rim of the targets bow, with as much again to be sure.
+  double bow = 0;
+  for (int i = 0; i <= 8; ++i) {
+    for (int j = 0; j <= 8; ++j) {
+      if (i % 8 != 0 && j % 8 != 0) continue;
+      const double col = targets.col - place.base_col + i / 8.0 * (targets.cols - 1);
+      const double row = targets.row - place.base_row + j / 8.0 * (targets.rows - 1);
+      const bool transposed = std::abs(row - frame.row()) > std::abs(col - frame.col());
+      if (std::max(std::abs(row - frame.row()), std::abs(col - frame.col())) < 1) continue;
+      const GeodesicPath path = frame.path_to(col, row, transposed);
+      for (const double xi : {0.25, 0.5, 0.75}) {
+        const double line = path.minor(0) + xi * (path.minor(1) - path.minor(0));
+        bow = std::max(bow, std::abs(path.minor(xi) - line));
+      }
+    }
+  }
+  const int margin = 2 + static_cast<int>(std::ceil(2 * bow));
+  return intersection({straight.col - margin, straight.row - margin, straight.cols + 2 * margin, straight.rows + 2 * margin},
+                      source.window());
+}
+
+}  // namespace sightbound

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Method. Place every observer, plan windows and memory, learn the error once; then load terrain (once for observers whose
+// windows lie together, else for one after the other) and paint every observer's view on one canvas.
+#include "jobs/viewshed_job.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "base/memory_budget.h"
+#include "io/crs.h"
+#include "jobs/loaded_terrain.h"
+#include "jobs/observer_place.h"
+#include "sight/viewshed.h"
+
+namespace sightbound {
+
+namespace {
+
+// One observer on his way through the job. Windows are in the whole raster.
+struct Post {
+  const Observer& observer;
+  std::string name;
+  GridPlace place;
+  Window reach;    // what he could be asked about
+  Window targets;  // what he is asked about
+  Window lines;    // what must be in memory for it
+  ObserverFrame frame;
+};
+
+std::vector<Post> place_observers(const DemSource& source, const Georeference& georeference,
+                                  const std::vector<Observer>& observers, const std::optional<Extent>& extent,
+                                  Progress& progress) {
+  const Window asked = window_of(extent, source);
+  std::vector<Post> posts;
+  posts.reserve(observers.size());
+  for (std::size_t i = 0; i < observers.size(); ++i) {
+    const Observer& o = observers[i];
+    const std::string name = name_of(o, i);
+    validate(o, name);
+    const GridPlace place = place_on(source, o.x, o.y, name);
+    const Window reach = reach_of(source, georeference, place, o.max_distance);
+    const Window targets = intersection(reach, asked);
+    ObserverFrame frame = frame_of(georeference, place, reach);
+    const Window lines = targets.empty() ? Window{place.base_col, place.base_row, 1, 1} : lines_window(source, frame, place, targets);
+    posts.push_back({o, name, place, reach, targets, lines, std::move(frame)});
+    progress.check();
+  }
+  return posts;
+}
+
+// What is in memory at once.
+struct Plan {
+  Window canvas;          // the result
+  bool together = false;  // one terrain for all observers
+  Window terrain;         // ... and its window
+  std::size_t bytes = 0;  // planned peak
+};
+
+Plan plan_memory(const std::vector<Post>& posts, const ErrorModel& model, const ViewshedOptions& options,
+                 const DemSource& source, const MemoryBudget& budget) {
+  Plan plan;
+  std::size_t separate_cells = 0, separate_bytes = 0;
+  for (const Post& post : posts) {
+    plan.canvas = bounding(plan.canvas, post.reach);
+    plan.terrain = bounding(plan.terrain, post.lines);
+    separate_cells += post.lines.cells();
+    separate_bytes = std::max(separate_bytes, LoadedTerrain::memory(post.lines, model, options).peak);
+  }
+  if (options.extent) plan.canvas = window_of(options.extent, source);
+  const std::size_t per_cell = sizeof(float) + 1 + (posts.size() > 1 ? sizeof(std::uint32_t) : 0) +
+                               (options.heights ? 2 * sizeof(float) : 0);
+  const std::size_t canvas_bytes = plan.canvas.cells() * per_cell;
+  const std::size_t together_bytes = LoadedTerrain::memory(plan.terrain, model, options).peak;
+  constexpr std::size_t kWorthwhile = 2;  // reading twice the cells once beats many small windows' halos and set-up
+  plan.together = plan.terrain.cells() <= kWorthwhile * separate_cells && canvas_bytes + together_bytes <= budget.bytes();
+  plan.bytes = canvas_bytes + (plan.together ? together_bytes : separate_bytes);
+  budget.require(plan.bytes,
+                 "A viewshed of " + std::to_string(plan.canvas.cols) + " x " + std::to_string(plan.canvas.rows) + " cells",
+                 "Give a smaller max_distance or an extent, ask for one result per observer, or allow a larger memory_budget.");
+  return plan;
+}
+
+class Run {
+ public:
+  Run(const DemSource& source, const Georeference& georeference, const ErrorModel& model, const ViewshedOptions& options,
+      const Workers& workers, Canvas& canvas, const Window& canvas_window, ViewshedReport& report, Progress& progress)
+      : source_(source), georeference_(georeference), model_(model), options_(options), workers_(workers), canvas_(canvas),
+        canvas_window_(canvas_window), report_(report), progress_(progress) {}
+
+  void together(const std::vector<Post>& posts, const Window& window, double share) {
+    progress_.begin(share / 4, 1);
+    const LoadedTerrain terrain = load(window);
+    progress_.begin(share * 3 / 4, cells(posts));
+    for (const Post& post : posts) view(post, terrain);
+  }
+
+  void one_by_one(const std::vector<Post>& posts, double share) {
+    const double all = cells(posts);
+    for (const Post& post : posts) {
+      const double part = share * static_cast<double>(post.lines.cells()) / all;
+      progress_.begin(part / 4, 1);
+      const LoadedTerrain terrain = load(post.lines);
+      progress_.begin(part * 3 / 4, static_cast<double>(post.lines.cells()));
+      view(post, terrain);
+    }
+  }
+
+ private:
+  static double cells(const std::vector<Post>& posts) {
+    double sum = 0;
+    for (const Post& post : posts) sum += static_cast<double>(post.lines.cells());
+    return sum;
+  }
+
+  LoadedTerrain load(const Window& window) {
+    return LoadedTerrain(source_, georeference_, with_room(window), model_, options_, report_.warnings, workers_, progress_);
+  }
+
+  // A surface needs two samples each way.
+  Window with_room(Window w) const {
+    if (w.cols < 2) w = {std::min(w.col, source_.cols() - 2), w.row, 2, w.rows};
+    if (w.rows < 2) w = {w.col, std::min(w.row, source_.rows() - 2), w.cols, 2};
+    return w;
+  }
+
+  void view(const Post& post, const LoadedTerrain& terrain) {
+    const Window& window = terrain.window();
+    const Observer& o = post.observer;
+    const double col = post.place.whole_col() - window.col, row = post.place.whole_row() - window.row;
+    ObserverReport out;
+    out.x = o.x;
+    out.y = o.y;
+    out.name = o.name;
+    out.status = "ok";
+    out.ground_height = interpolate(terrain.ground(), col, row);
+    if (std::isnan(out.ground_height) || std::isnan(interpolate(terrain.scene().heights, col, row))) {
+      throw InvalidInput(post.name + " stands where the DEM has no height (nodata). Move it, or fill the hole first.");
+    }
+    const bool absolute = options_.height_reference == HeightReference::kAbsolute;
+    out.eye_height = absolute ? o.height : out.ground_height + o.height;
+    const double below = interpolate(terrain.scene().heights, col, row) - out.eye_height;
+    if (below > 0) {
+      out.status = "eye below the terrain";
+      report_.warnings.push_back(post.name + ": the eye is " + std::to_string(below) + " m below the terrain; it sees nothing.");
+    }
+
+    View view{terrain.scene(), {}, {}, terrain.ground(), terrain.cell_areas(), {}};
+    const SampleField& sampling = terrain.scene().error.sampling;
+    view.eye = {&post.frame, post.place.base_col - window.col, post.place.base_row - window.row, out.eye_height,
+                sampling.is_constant() ? static_cast<double>(sampling.constant()) : interpolate(sampling.values(), col, row)};
+    view.tops = {absolute ? nullptr : &terrain.ground(), o.target_height};
+    view.limits = {o.min_distance, o.max_distance, o.azimuth_from, o.azimuth_to, o.angle_from, o.angle_to};
+    canvas_.move_to(canvas_window_.col - window.col, canvas_window_.row - window.row);
+    const ViewTotals seen = viewshed(view, canvas_, workers_, progress_);
+    out.visible_m2 = seen.visible_m2;
+    out.uncertain_m2 = seen.uncertain_m2;
+    out.hidden_m2 = seen.hidden_m2;
+    report_.hole_doubt_m2 += seen.hole_doubt_m2;
+    report_.cells_settled += seen.settled;
+    report_.observers.push_back(std::move(out));
+  }
+
+  const DemSource& source_;
+  const Georeference& georeference_;
+  const ErrorModel& model_;
+  const ViewshedOptions& options_;
+  const Workers& workers_;
+  Canvas& canvas_;
+  const Window& canvas_window_;
+  ViewshedReport& report_;
+  Progress& progress_;
+};
+
+// Areas of the combined verdict. One observer's are those already counted.
+void total_areas(const DemSource& source, const Georeference& georeference, const Window& window, const Canvas& canvas,
+                 ViewshedReport& report) {
+  if (report.observers.size() == 1) {
+    const ObserverReport& only = report.observers.front();
+    report.visible_m2 = only.visible_m2;
+    report.uncertain_m2 = only.uncertain_m2;
+    report.hidden_m2 = only.hidden_m2;
+    return;
+  }
+  const std::vector<CellSize> sizes = ground_cell_sizes(georeference, {0, window.row, source.cols(), window.rows});
+  for (int r = 0; r < window.rows; ++r) {
+    std::array<std::uint64_t, 256> cells{};
+    for (int c = 0; c < window.cols; ++c) ++cells[canvas.verdict.at(r, c)];
+    const CellSize& size = sizes[static_cast<std::size_t>(r)];
+    const double area = size.col_m * size.row_m;
+    report.visible_m2 += area * static_cast<double>(cells[kVisible]);
+    report.uncertain_m2 += area * static_cast<double>(cells[kUncertain]);
+    report.hidden_m2 += area * static_cast<double>(cells[kHidden]);
+  }
+}
+
+}  // namespace
+
+ViewshedResult run_viewshed(const DemSource& source, const std::vector<Observer>& observers, const ErrorModel& model,
+                            const ViewshedOptions& options, Progress& progress) {
+  validate(options);
+  model.validate();
+  if (observers.empty()) throw InvalidInput("observers is empty; give at least one.");
+  const MemoryBudget budget(options.memory_budget);
+  const Workers workers(options.threads);
+  ViewshedResult result;
+  ViewshedReport& report = result.report;
+  report.warnings = source.notes();
+
+  const Georeference georeference = georeference_of(source);
+  const std::vector<Post> posts = place_observers(source, georeference, observers, options.extent, progress);
+  const Plan plan = plan_memory(posts, model, options, source, budget);
+  report.memory_bytes = plan.bytes;
+
+  progress.begin(0.1, 1);
+  const ErrorModel completed = complete_model(model, source, report.warnings, progress);
+  report.error_model = completed.describe();
+
+  Canvas canvas(plan.canvas, options.combine == Combine::kBest, options.heights, workers);
+  if (observers.size() > 1) canvas.start_counting();
+  Run run(source, georeference, completed, options, workers, canvas, plan.canvas, report, progress);
+  if (plan.together) {
+    run.together(posts, plan.terrain, 0.88);
+  } else {
+    run.one_by_one(posts, 0.88);
+  }
+  total_areas(source, georeference, plan.canvas, canvas, report);
+
+  canvas.seal_heights();
+  if (source.flipped()) canvas.flip_rows();
+  result.confidence = std::move(canvas.confidence);
+  result.verdict = std::move(canvas.verdict);
+  result.count = std::move(canvas.count);
+  result.lowest_visible_height = std::move(canvas.certain_height);
+  result.likely_visible_height = std::move(canvas.likely_height);
+  result.geotransform = delivered_geotransform(source, plan.canvas);
+  result.crs_wkt = source.crs_wkt();
+  progress.finish();
+  return result;
+}
+
+}  // namespace sightbound

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sight/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sightbound {
+
+namespace {
+
+double largest_profile(const ErrorField& error) {
+  // The paper's f(Delta) makes the profile depend on the amplitude; 1 bounds it and keeps the bound linear.
+  if (error.profile.shape == GeologicShape::kGaussian && error.profile.range_m <= 0) return 1;
+  double largest = 0;
+  for (int row = 0; row < static_cast<int>(error.cell_sizes.size()); ++row) {
+    largest = std::max(largest, error.largest_profile(row, 0));
+  }
+  return largest;
+}
+
+double least_sampling(const SampleField& sampling) {
+  if (sampling.is_constant()) return sampling.constant();
+  float least = std::numeric_limits<float>::max();
+  for (const float s : sampling.values().values()) least = s < least ? s : least;
+  return least;
+}
+
+}  // namespace
+
+Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const SceneOptions& options, const Workers& workers)
+    : heights(heights_in),
+      error(error_in),
+      quantile(two_sided_quantile(options.confidence)),
+      largest_ratio(std::max(kCertainRatio, quantile)),
+      bend(options.curvature ? 1 - options.refraction : 0),
+      ends_move(options.ends_move),
+      see_across_nodata(options.see_across_nodata),
+      end_zone_m(kEndZoneCells * error_in.larger_side_m),
+      uniform(error_in.sampling.is_constant() && error_in.amplitude.is_constant() && error_in.amplitude.constant() == 0),
+      highest(heights_in.rows(), heights_in.cols(), [&](int r, float*) { return heights_in.row(r); }, workers),
+      least_sigma(std::max(least_sampling(error_in.sampling), kLeastSigma)),
+      largest_profile_(largest_profile(error_in)) {
+  if (uniform) return;
+  widest = MaxPyramid(
+      heights.rows(), heights.cols(),
+      [&](int r, float* buffer) {
+        for (int c = 0; c < heights.cols(); ++c) {
+          buffer[c] = std::nextafter(static_cast<float>(sigma_bound(r, c)), std::numeric_limits<float>::max());
+        }
+        return buffer;
+      },
+      workers);
+}
+
+}  // namespace sightbound

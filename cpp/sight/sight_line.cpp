@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Method. The line is cut at the columns (rows, when it runs along them) it crosses; a step is the part between two of
+// them. Blocks of 2^l steps are bounded by the largest height and sigma of the one to three pyramid nodes they touch and
+// skipped when they cannot matter; what is left is judged step by step.
+// Notation: m = major, w = minor coordinate from the observer's base sample; s, j = whole ones in the scene's grid; xi = share of the major span, t = share of the distance, z = terrain.
+#include "sight/sight_line.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace sightbound {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// A line that leaves the raster's rim by less than this follows the rim (the straight line may stand in up to there).
+constexpr double kRim = kFrameTolerance;
+// Metres; keeps the rounding of a bound (1e-12 of a height) from excluding the place that decides.
+constexpr double kSlack = 1e-7;
+constexpr std::array kEndPlaces{1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 3.0 / 4};  // larger cell sides from an end
+
+// The terrain at a place: up to three samples with weights; those of weight 0 are left out.
+struct Stencil {
+  std::array<std::ptrdiff_t, 3> sample;
+  std::array<double, 3> weight;
+  int count = 0;
+
+  void add(std::ptrdiff_t s, double w) {
+    if (w == 0) return;
+    sample[static_cast<std::size_t>(count)] = s;
+    weight[static_cast<std::size_t>(count++)] = w;
+  }
+  double of(const float* values) const {
+    double value = 0;
+    for (int i = 0; i < count; ++i) value += weight[static_cast<std::size_t>(i)] * static_cast<double>(values[sample[static_cast<std::size_t>(i)]]);
+    return value;
+  }
+  double of(const SampleField& field) const {
+    return field.is_constant() ? static_cast<double>(field.constant()) : of(field.values().data());
+  }
+};
+
+}  // namespace
+
+// k* itself: the smallest clearance ratio, from K downwards; unknown ground caps it at 0.
+class SightLine::LeastRatio {
+ public:
+  LeastRatio(const SightLine& line, double least) : line_(line), best_(line.scene_.largest_ratio), least_(least) {}
+
+  double best() const { return best_; }
+  bool done() const { return best_ <= least_; }
+  // Could anything with at most this sigma still matter?
+  bool matters(double, double clearance, double sigma_cap) const { return clearance <= 0 || clearance < best_ * sigma_cap + kSlack; }
+  bool take(double, double clearance, double sigma) { return lower(clearance / sigma); }
+  bool take_unknown() { return lower(0); }
+  bool unknown_matters() const { return best_ > 0; }
+  // Nothing in a stretch whose lines stay above `line_low` and terrain below `z` beats this.
+  bool excludes(double, double, double line_low, double z, double sigma_max, double sigma_min) const {
+    const double clearance = line_low - z;
+    return clearance >= 0 ? clearance >= best_ * sigma_max + kSlack : clearance >= best_ * sigma_min + kSlack;
+  }
+
+ private:
+  bool lower(double k) {
+    if (!(k < best_)) return false;
+    best_ = k;
+    return true;
+  }
+  const SightLine& line_;
+  double best_, least_;
+};
+
+// The height the target needs: at every place (1 - t) O + t T - drop t (1 - t) >= z + k sigma.
+class SightLine::NeededHeight {
+ public:
+  NeededHeight(const SightLine& line, double k, double floor) : line_(line), k_(k), best_(floor) {}
+
+  double best() const { return best_; }
+  bool done() const { return best_ == kInfinity; }
+  bool matters(double t, double clearance, double sigma_cap) const {
+    return line_.target_height_ + (k_ * sigma_cap - clearance) / t + kSlack > best_;
+  }
+  bool take(double t, double clearance, double sigma) {
+    // The place lacks k sigma - clearance; raising the target by 1 raises the line there by t.
+    return raise(line_.target_height_ + (k_ * sigma - clearance) / t);
+  }
+  bool take_unknown() { return k_ > 0 && raise(kInfinity); }
+  bool unknown_matters() const { return k_ > 0; }
+  bool excludes(double t_low, double t_high, double, double z, double sigma_max, double) const {
+    const double over = z + k_ * sigma_max - line_.eye_height_;
+    const double needed = line_.eye_height_ + over / (over > 0 ? t_low : t_high) + line_.drop_ * (1 - t_low);
+    return needed + kSlack <= best_;
+  }
+
+ private:
+  bool raise(double height) {
+    if (!(height > best_)) return false;
+    best_ = height;
+    return true;
+  }
+  const SightLine& line_;
+  double k_, best_;
+};
+
+template <class Objective>
+class SightLine::Search {
+ public:
+  Search(const SightLine& line, Objective objective)
+      : line_(line), scene_(line.scene_), objective_(objective), bow_(line.path_.bow_bound()) {
+    const double end = line.major0_ + line.span_;
+    low_ = std::min(line.major0_, end);
+    high_ = std::max(line.major0_, end);
+    first_ = static_cast<int>(std::floor(low_)) + line.base_major_;
+    last_ = std::max(first_, static_cast<int>(std::ceil(high_)) - 1 + line.base_major_);
+  }
+
+  const Objective& objective() const { return objective_; }
+  double critical_xi() const { return critical_xi_; }
+  bool hole() const { return hole_; }
+
+  void all(double hint) {
+    end_places();
+    if (hint > 0 && hint < 1) {
+      const int near = static_cast<int>(std::floor(line_.major0_ + hint * line_.span_)) + line_.base_major_;
+      step(std::clamp(near, first_, last_));
+    }
+    int level = MaxPyramid::kFinest;
+    while (level < scene_.highest.coarsest() && (first_ >> level) != (last_ >> level)) ++level;
+    for (int node = first_ >> level; node <= last_ >> level; ++node) {
+      if (!excluded(level, node)) descend(level, node);
+    }
+  }
+
+  // Only the steps outside [clear_from, clear_to].
+  void ends(int clear_from, int clear_to) {
+    end_places();
+    const int from = std::min(clear_from, clear_to), to = std::max(clear_from, clear_to);
+    for (int s = first_; s < std::min(from, last_ + 1); ++s) step(s);
+    for (int s = std::max(to, first_); s <= last_; ++s) step(s);
+  }
+
+  template <class Visitor>
+  void every_place(const Visitor& visit) {
+    for (const double f : kEndPlaces) {
+      end_place(f, visit);
+      end_place(-f, visit);
+    }
+    for (int s = first_; s <= last_; ++s) step(s, visit);
+  }
+
+ private:
+  double xi_of(double m) const { return (m - line_.major0_) / line_.span_; }
+  double m_of(int s) const { return s - line_.base_major_; }
+  // A place this far out has no terrain; up to kRim it follows the rim.
+  bool is_outside(double w) const {
+    return w < -kRim - line_.base_minor_ || w > line_.minors_ - 1 - line_.base_minor_ + kRim;
+  }
+  double inside(double w) const {
+    return std::clamp(w, -static_cast<double>(line_.base_minor_), static_cast<double>(line_.minors_ - 1 - line_.base_minor_));
+  }
+  // The cell that holds w, in the scene's grid.
+  int cell_of(double w) const {
+    return std::clamp(static_cast<int>(std::floor(w)) + line_.base_minor_, 0, line_.minors_ - 2);
+  }
+
+  // ---- bounding -------------------------------------------------------------------------------------------------
+
+  bool excluded(int level, int node) {
+    const double from = std::max(low_, m_of(node << level)), to = std::min(high_, m_of((node + 1) << level));
+    const double xi_a = xi_of(from), xi_b = xi_of(to);
+    const double width = std::abs(xi_b - xi_a), pad = bow_ * width * width / 8;
+    const double w_a = line_.path_.minor(xi_a), w_b = line_.path_.minor(xi_b);
+    const double w_low = std::min(w_a, w_b) - pad, w_high = std::max(w_a, w_b) + pad;
+    const int a = cell_of(w_low) >> level, b = cell_of(w_high) >> level;
+    bool unknown = is_outside(w_low) || is_outside(w_high);
+    float z = scene_.highest.max(level, line_.transposed_ ? node : a, line_.transposed_ ? a : node);
+    float sigma = scene_.uniform ? 0 : widest(level, node, a);
+    for (int minor = a; minor <= b; ++minor) {
+      const int row = line_.transposed_ ? node : minor, col = line_.transposed_ ? minor : node;
+      z = std::max(z, scene_.highest.max(level, row, col));
+      if (!scene_.uniform) sigma = std::max(sigma, widest(level, node, minor));
+      unknown = unknown || scene_.highest.has_hole(level, row, col);
+    }
+    if (unknown && !scene_.see_across_nodata && objective_.unknown_matters()) return false;
+
+    const double t_a = line_.path_.share(xi_a), t_b = line_.path_.share(xi_b);
+    const double t_low = std::max(std::min(t_a, t_b), 0.0), t_high = std::max(t_a, t_b), width_t = t_high - t_low;
+    // The line bulges below its chord by at most drop width^2 / 4.
+    const double line_low = std::min(height(t_a), height(t_b)) - line_.drop_ * width_t * width_t / 4;
+    const double ends_most = scene_.ends_move ? std::max(line_.eye_sampling_, line_.target_sampling_) : 0;
+    const double sigma_max = (scene_.uniform ? scene_.least_sigma : static_cast<double>(sigma)) + ends_most;
+    sigma_cap_ = sigma_max;
+    const bool in_end_zone = t_low * line_.distance_ < scene_.end_zone_m || (1 - t_high) * line_.distance_ < scene_.end_zone_m;
+    const double sigma_min = in_end_zone ? kLeastSigma : scene_.least_sigma;
+    if (t_low <= 0) return false;
+    return objective_.excludes(t_low, t_high, line_low, static_cast<double>(z), sigma_max, sigma_min);
+  }
+
+  float widest(int level, int node, int minor) const {
+    return scene_.widest.max(level, line_.transposed_ ? node : minor, line_.transposed_ ? minor : node);
+  }
+
+  // To be called right after excluded() for the same node.
+  void descend(int level, int node) {
+    if (objective_.done()) return;
+    if (level == MaxPyramid::kFinest) {
+      const int from = std::max(first_, node << level), to = std::min(last_, ((node + 1) << level) - 1);
+      for (int s = from; s <= to && !objective_.done(); ++s) step(s);
+      sigma_cap_ = kInfinity;
+      return;
+    }
+    // The end nearer to the target first: on rising ground it decides more often.
+    const int child = line_.span_ > 0 ? 2 * node + 1 : 2 * node;
+    for (const int c : {child, 4 * node + 1 - child}) {
+      if (c < (first_ >> (level - 1)) || c > (last_ >> (level - 1))) continue;
+      if (!excluded(level - 1, c)) descend(level - 1, c);
+    }
+  }
+
+  // ---- places ---------------------------------------------------------------------------------------------------
+
+  double height(double t) const {
+    return line_.eye_height_ + t * (line_.target_height_ - line_.eye_height_) - line_.drop_ * t * (1 - t);
+  }
+
+  void step(int s) {
+    step(s, [this](const Stencil& stencil, bool outside, double d, double xi) { judge(stencil, outside, d, xi); });
+  }
+  void end_places() {
+    for (const double f : kEndPlaces) {
+      const auto visit = [this](const Stencil& stencil, bool outside, double d, double xi) { judge(stencil, outside, d, xi); };
+      end_place(f, visit);
+      end_place(-f, visit);
+    }
+  }
+
+  // All crossings in (s, s + 1] between the ends.
+  template <class Visitor>
+  void step(int s, const Visitor& visit) {
+    const double m_a = std::max(low_, m_of(s)), m_b = std::min(high_, m_of(s + 1));
+    const double w_a = line_.path_.minor(xi_of(m_a)), w_b = line_.path_.minor(xi_of(m_b));
+    if (m_of(s + 1) < high_) column(s + 1, w_b, visit);
+    if (m_b <= m_a) return;
+    // Rows: w = whole number; diagonals: w - m = whole number.
+    for (const bool diagonal : {false, true}) {
+      const double g_a = diagonal ? w_a - m_a : w_a, g_b = diagonal ? w_b - m_b : w_b;
+      const double g_low = std::min(g_a, g_b), g_high = std::max(g_a, g_b);
+      for (double g = std::floor(g_low) + 1; g < g_high; ++g) {
+        double m = m_a + (g - g_a) / (g_b - g_a) * (m_b - m_a);
+        if (bow_ > 0) {  // the path is curved: one Newton step from its chord
+          const double slope = line_.path_.minor_slope(xi_of(m)) / line_.span_ - (diagonal ? 1 : 0);
+          const double value = line_.path_.minor(xi_of(m)) - (diagonal ? m : 0);
+          const double better = m + (g - value) / slope;
+          if (better > m_a && better < m_b) m = better;
+        }
+        const int j = static_cast<int>(diagonal ? g + m_of(s) : g) + line_.base_minor_;
+        crossing(s, j, m - m_of(s), diagonal, xi_of(m), visit);
+      }
+    }
+  }
+
+  template <class Visitor>
+  void column(int s, double w, const Visitor& visit) {
+    const int j = cell_of(w);
+    const double f = inside(w) - (j - line_.base_minor_);
+    Stencil stencil;
+    stencil.add(sample(s, j), 1 - f);
+    stencil.add(sample(s, j + 1), f);
+    visit(stencil, is_outside(w), spacing(s, j, 0, std::min(f, 1 - f)), xi_of(m_of(s)));
+  }
+
+  // Where the line meets the edge from sample (s, j) to (s + 1, j), or to (s + 1, j + 1), a share f along it.
+  template <class Visitor>
+  void crossing(int s, int j, double f, bool diagonal, double xi, const Visitor& visit) {
+    const int next = j + (diagonal ? 1 : 0);
+    const bool outside = j < 0 || next > line_.minors_ - 1;
+    Stencil stencil;
+    if (!outside) {
+      stencil.add(sample(s, j), 1 - f);
+      stencil.add(sample(s + 1, next), f);
+    }
+    const double nearest = std::min(f, 1 - f);
+    visit(stencil, outside, outside ? 0 : spacing(s, j, nearest, diagonal ? nearest : 0), xi);
+  }
+
+  // f > 0: larger cell sides from the observer; f < 0: from the target.
+  template <class Visitor>
+  void end_place(double f, const Visitor& visit) {
+    const double from_end = std::abs(f) * scene_.error.larger_side_m;
+    if (from_end >= line_.distance_) return;
+    const double t = f > 0 ? from_end / line_.distance_ : 1 - from_end / line_.distance_;
+    double xi = t;
+    for (int i = 0; i < 3; ++i) xi -= line_.path_.share(xi) - t;  // the share differs from xi by little, and smoothly
+    const double m = line_.major0_ + xi * line_.span_, w = line_.path_.minor(xi);
+    const int i = std::clamp(static_cast<int>(std::floor(m)) + line_.base_major_, 0, line_.majors_ - 2), j = cell_of(w);
+    const double fm = std::clamp(m - m_of(i), 0.0, 1.0), fw = inside(w) - (j - line_.base_minor_);
+    Stencil stencil;
+    stencil.add(sample(i, j), 1 - std::max(fm, fw));
+    if (fm >= fw) {
+      stencil.add(sample(i + 1, j), fm - fw);
+    } else {
+      stencil.add(sample(i, j + 1), fw - fm);
+    }
+    stencil.add(sample(i + 1, j + 1), std::min(fm, fw));
+    visit(stencil, is_outside(w), spacing(i, j, std::min(fm, 1 - fm), std::min(fw, 1 - fw)), xi);
+  }
+
+  std::ptrdiff_t sample(int major, int minor) const {
+    return major * line_.major_stride_ + minor * line_.minor_stride_;
+  }
+
+  // Ground distance to the nearest sample, metres, of a place `f_major`, `f_minor` cells from it.
+  double spacing(int major, int minor, double f_major, double f_minor) const {
+    if (scene_.uniform) return 0;
+    const CellSize& cell = scene_.error.cell_sizes[static_cast<std::size_t>(line_.transposed_ ? major : minor)];
+    const double a = f_major * (line_.transposed_ ? cell.row_m : cell.col_m);
+    const double b = f_minor * (line_.transposed_ ? cell.col_m : cell.row_m);
+    return std::sqrt(a * a + b * b);
+  }
+
+ public:
+  // sigma a place is judged with, without the part of moving ends.
+  double sigma(const Stencil& stencil, double d, double t) const {
+    const bool end_zone = t * line_.distance_ < scene_.end_zone_m || (1 - t) * line_.distance_ < scene_.end_zone_m;
+    if (scene_.uniform) return end_zone ? kLeastSigma : scene_.least_sigma;
+    const double amplitude = stencil.of(scene_.error.amplitude);
+    const double between = amplitude > 0 ? amplitude * scene_.error.profile(d, amplitude) : 0;
+    return std::max((end_zone ? 0 : stencil.of(scene_.error.sampling)) + between, kLeastSigma);
+  }
+
+  double moving_ends(double t) const {
+    return scene_.ends_move ? (1 - t) * line_.eye_sampling_ + t * line_.target_sampling_ : 0;
+  }
+
+  JudgedPlace described(const Stencil& stencil, bool outside, double d, double xi) const {
+    JudgedPlace place;
+    place.xi = xi;
+    place.share = line_.path_.share(xi);
+    place.line = height(place.share);
+    place.ground = outside ? std::numeric_limits<double>::quiet_NaN() : stencil.of(scene_.heights.data());
+    place.sigma = std::isnan(place.ground) ? place.ground : sigma(stencil, d, place.share) + moving_ends(place.share);
+    return place;
+  }
+
+ private:
+  void judge(const Stencil& stencil, bool outside, double d, double xi) {
+    const double t = line_.path_.share(xi);
+    if (!(t > 0 && t < 1)) return;
+    const double z = outside ? std::numeric_limits<double>::quiet_NaN() : stencil.of(scene_.heights.data());
+    if (std::isnan(z)) {
+      if (!scene_.see_across_nodata && objective_.take_unknown()) {
+        critical_xi_ = xi;
+        hole_ = true;
+      }
+      return;
+    }
+    const double clearance = height(t) - z;
+    if (!objective_.matters(t, clearance, sigma_cap_)) return;
+    if (objective_.take(t, clearance, sigma(stencil, d, t) + moving_ends(t))) {
+      critical_xi_ = xi;
+      hole_ = false;
+    }
+  }
+
+  const SightLine& line_;
+  const Scene& scene_;
+  Objective objective_;
+  double bow_;
+  double sigma_cap_ = kInfinity;  // no sigma of the places at hand is larger
+  double low_, high_;
+  int first_, last_;
+  double critical_xi_ = -1;
+  bool hole_ = false;
+};
+
+SightLine::SightLine(const Scene& scene, const Eye& eye, const Target& target)
+    : scene_(scene),
+      transposed_(std::abs(target.row - eye.frame->row()) > std::abs(target.col - eye.frame->col())),
+      major_stride_(transposed_ ? scene.heights.cols() : 1),
+      minor_stride_(transposed_ ? 1 : scene.heights.cols()),
+      majors_(transposed_ ? scene.heights.rows() : scene.heights.cols()),
+      minors_(transposed_ ? scene.heights.cols() : scene.heights.rows()),
+      base_major_(transposed_ ? eye.base_row : eye.base_col),
+      base_minor_(transposed_ ? eye.base_col : eye.base_row),
+      major0_(transposed_ ? eye.frame->row() : eye.frame->col()),
+      span_((transposed_ ? target.row : target.col) - major0_),
+      eye_height_(eye.height),
+      target_height_(target.height),
+      eye_sampling_(eye.sampling),
+      target_sampling_(target.sampling),
+      place_(eye.frame->at(target.col, target.row)),
+      distance_(place_.distance()),
+      drop_(scene.bend * place_.bulge) {
+  if (span_ != 0) path_ = eye.frame->path_to(target.col, target.row, transposed_);
+}
+
+double SightLine::elevation_deg() const {
+  return std::atan2(target_height_ - drop_ - eye_height_, distance_) * 180 / std::numbers::pi;
+}
+
+Critical SightLine::settle(double hint) const {
+  if (span_ == 0) return {scene_.largest_ratio, -1, false};
+  Search search(*this, LeastRatio(*this, -scene_.largest_ratio));
+  search.all(hint);
+  return {std::max(search.objective().best(), -scene_.largest_ratio), search.critical_xi(), search.hole()};
+}
+
+Critical SightLine::settle_ends(int clear_from, int clear_to) const {
+  if (span_ == 0) return {scene_.largest_ratio, -1, false};
+  Search search(*this, LeastRatio(*this, -scene_.largest_ratio));
+  search.ends(clear_from, clear_to);
+  return {std::max(search.objective().best(), -scene_.largest_ratio), search.critical_xi(), search.hole()};
+}
+
+double SightLine::needed_height(double k, double floor, double hint) const {
+  if (span_ == 0) return floor;
+  Search search(*this, NeededHeight(*this, k, floor));
+  search.all(hint);
+  return search.objective().best();
+}
+
+void SightLine::for_each_place(const std::function<void(const JudgedPlace&)>& visit) const {
+  if (span_ == 0) return;
+  Search search(*this, LeastRatio(*this, -scene_.largest_ratio));
+  search.every_place([&](const Stencil& stencil, bool outside, double d, double xi) {
+    const JudgedPlace place = search.described(stencil, outside, d, xi);
+    if (place.share > 0 && place.share < 1) visit(place);
+  });
+}
+
+}  // namespace sightbound

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sight/viewshed.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace sightbound {
+
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// What one block of the fan does with its targets.
+class Painter {
+ public:
+  Painter(const View& view, Canvas& canvas, Progress& progress)
+      : view_(view), scene_(view.scene), canvas_(canvas), progress_(progress) {}
+
+  const ViewTotals& totals() const { return totals_; }
+
+  void paint(const FanColumn& column) {
+    const ViewLimits& limits = view_.limits;
+    const bool by_place = column.least_distance < limits.min_distance || column.most_distance > limits.max_distance ||
+                          !limits.all_azimuths() || !limits.all_angles();
+    double hint = -1;
+    for (int i = 0; i < column.count; ++i) {
+      const int minor = column.first_minor + i;
+      const int row = column.transposed ? column.major : minor, col = column.transposed ? minor : column.major;
+      const float ground = scene_.heights.at(row, col);
+      if (ground != ground || !canvas_.holds(row, col) || (by_place && !asked(row, col))) continue;
+      const auto state = static_cast<TargetState>(column.state[i]);
+      if (state == kSurelyHidden && !canvas_.has_heights()) {
+        put(row, col, -scene_.largest_ratio);
+        continue;
+      }
+      settle(column, state, row, col, hint);
+    }
+    work_ += column.count;
+    if (work_ > kReportEvery) {
+      progress_.advance(work_);
+      work_ = 0;
+    }
+  }
+
+  // The sample the observer stands on exactly: nothing lies between.
+  void paint_own_sample() {
+    const int row = view_.eye.base_row, col = view_.eye.base_col;
+    if (!canvas_.holds(row, col) || !asked(row, col)) return;
+    put(row, col, scene_.largest_ratio);
+    if (canvas_.has_heights()) canvas_.put_heights(row, col, 0, 0);
+  }
+
+  void finish() { progress_.advance(work_); }
+
+ private:
+  static constexpr double kReportEvery = 4096;  // cells; a fraction of a millisecond, tens of them when all are settled
+  static constexpr double kSettleCost = 30;     // in cells, for the pace of the progress alone
+
+  Target target(int row, int col) const {
+    return {static_cast<double>(col - view_.eye.base_col), static_cast<double>(row - view_.eye.base_row),
+            view_.tops.at(row, col),
+            scene_.ends_move ? static_cast<double>(scene_.error.sampling.at(row, col)) : 0.0};
+  }
+
+  bool asked(int row, int col) const {
+    const ViewLimits& limits = view_.limits;
+    const FramePlace place = view_.eye.frame->at(col - view_.eye.base_col, row - view_.eye.base_row);
+    const double distance = place.distance();
+    if (distance < limits.min_distance || distance > limits.max_distance) return false;
+    if (!limits.all_azimuths() && !limits.admits_azimuth(place.azimuth_deg())) return false;
+    if (limits.all_angles()) return true;
+    const double rise = view_.tops.at(row, col) - scene_.bend * place.bulge - view_.eye.height;
+    const double angle = std::atan2(rise, distance) * 180 / std::numbers::pi;
+    return angle >= limits.angle_from && angle <= limits.angle_to;
+  }
+
+  void settle(const FanColumn& column, TargetState state, int row, int col, double& hint) {
+    const double base_ground = static_cast<double>(view_.ground.at(row, col));
+    if (std::isnan(base_ground)) return;  // no ground to stand on
+    const SightLine line(scene_, view_.eye, target(row, col));
+    Critical critical{-scene_.largest_ratio, -1, false};
+    if (state == kClearBetween) critical = line.settle_ends(column.clear_from, column.clear_to);
+    if (state == kOpen) {
+      critical = line.settle(hint);
+      hint = critical.xi;
+    }
+    put(row, col, critical.k);
+    if (critical.hole && verdict(scene_, critical.k) == kUncertain) {
+      totals_.hole_doubt_m2 += area(row);
+    }
+    if (state != kSurelyHidden) ++totals_.settled;
+    if (canvas_.has_heights()) {
+      const double certain = line.needed_height(scene_.quantile, base_ground, hint);
+      const double likely = line.needed_height(0, base_ground, hint);
+      const auto above = [&](double z) { return static_cast<float>(z - base_ground); };
+      canvas_.put_heights(row, col, above(certain), above(likely));
+    }
+    work_ += kSettleCost;
+  }
+
+  void put(int row, int col, double k) {
+    const std::uint8_t claim = verdict(scene_, k);
+    canvas_.put(row, col, probability(scene_, k), claim);
+    (claim == kVisible ? totals_.visible_m2 : claim == kHidden ? totals_.hidden_m2 : totals_.uncertain_m2) += area(row);
+  }
+
+  double area(int row) const { return view_.cell_areas[static_cast<std::size_t>(row)]; }
+
+  const View& view_;
+  const Scene& scene_;
+  Canvas& canvas_;
+  Progress& progress_;
+  ViewTotals totals_;
+  double work_ = 0;
+};
+
+}  // namespace
+
+bool ViewLimits::admits_azimuth(double azimuth_deg) const {
+  const double width = azimuth_to - azimuth_from;
+  double beyond = std::fmod(azimuth_deg - azimuth_from, 360);
+  if (beyond < 0) beyond += 360;
+  double span = std::fmod(width, 360);
+  if (span < 0) span += 360;
+  return beyond <= span;
+}
+
+Canvas::Canvas(const Window& window, bool best, bool heights, const Workers& workers)
+    : confidence(window.rows, window.cols), verdict(window.rows, window.cols), window_(window), best_(best) {
+  if (heights) {
+    certain_height = Grid<float>(window.rows, window.cols);
+    likely_height = Grid<float>(window.rows, window.cols);
+  }
+  workers.for_each(static_cast<std::size_t>(window.rows), [&](std::size_t r) {
+    const int row = static_cast<int>(r);
+    std::fill_n(verdict.row(row), window.cols, kNoVerdict);
+    for (Grid<float>* grid : {&confidence, &certain_height, &likely_height}) {
+      if (!grid->empty()) std::fill_n(grid->row(row), window.cols, kNan);
+    }
+  });
+}
+
+void Canvas::flip_rows() {
+  for (Grid<float>* grid : {&confidence, &certain_height, &likely_height}) grid->flip_rows();
+  verdict.flip_rows();
+  count.flip_rows();
+}
+
+void Canvas::start_counting() { count = Grid<std::uint32_t>(window_.rows, window_.cols, kNoCount); }
+
+void Canvas::put(int row, int col, float p, std::uint8_t claim) {
+  const int r = row - window_.row, c = col - window_.col;
+  float& p_before = confidence.at(r, c);
+  std::uint8_t& claim_before = verdict.at(r, c);
+  if (claim_before == kNoVerdict || (best_ ? p > p_before : p < p_before)) p_before = p;
+  if (claim_before == kNoVerdict || (best_ ? claim > claim_before : claim < claim_before)) claim_before = claim;
+  if (count.empty()) return;
+  std::uint32_t& n = count.at(r, c);
+  if (n == kNoCount) n = 0;
+  if (claim == kVisible) ++n;
+}
+
+void Canvas::put_heights(int row, int col, float certain, float likely) {
+  const int r = row - window_.row, c = col - window_.col;
+  const auto combine = [this](float& before, float now) {
+    before = before != before ? now : best_ ? std::min(before, now) : std::max(before, now);
+  };
+  combine(certain_height.at(r, c), certain);
+  combine(likely_height.at(r, c), likely);
+}
+
+void Canvas::seal_heights() {
+  for (Grid<float>* heights : {&certain_height, &likely_height}) {
+    for (float& h : heights->values()) h = std::isinf(h) ? kNan : h;
+  }
+}
+
+ViewTotals& ViewTotals::operator+=(const ViewTotals& other) {
+  visible_m2 += other.visible_m2;
+  uncertain_m2 += other.uncertain_m2;
+  hidden_m2 += other.hidden_m2;
+  hole_doubt_m2 += other.hole_doubt_m2;
+  settled += other.settled;
+  return *this;
+}
+
+ViewTotals viewshed(const View& view, Canvas& canvas, const Workers& workers, Progress& progress) {
+  const WedgeFan fan(view.scene, view.eye, view.tops, view.limits.max_distance);
+  // Summed in the order of the blocks, whichever thread had them.
+  std::vector<ViewTotals> totals(fan.blocks() + 1);
+  if (view.eye.frame->col() == 0 && view.eye.frame->row() == 0) {
+    Painter painter(view, canvas, progress);
+    painter.paint_own_sample();
+    totals.back() = painter.totals();
+  }
+  workers.for_each(fan.blocks(), [&](std::size_t block) {
+    Painter painter(view, canvas, progress);
+    fan.march(block, [&](const FanColumn& column) { painter.paint(column); });
+    painter.finish();
+    totals[block] = painter.totals();
+  });
+  ViewTotals sum;
+  for (const ViewTotals& t : totals) sum += t;
+  return sum;
+}
+
+}  // namespace sightbound
