@@ -11,7 +11,6 @@ from osgeo import gdal
 from qgis.core import (
     QgsApplication,
     QgsCoordinateReferenceSystem,
-    QgsCoordinateTransform,
     QgsHillshadeRenderer,
     QgsLayerTree,
     QgsLayout,
@@ -28,6 +27,7 @@ from qgis.core import (
     QgsPalLayerSettings,
     QgsProject,
     QgsRasterLayer,
+    QgsRectangle,
     QgsSingleSymbolRenderer,
     QgsTextBufferSettings,
     QgsTextFormat,
@@ -140,14 +140,16 @@ def utm_of(layer):
     return QgsCoordinateReferenceSystem.fromEpsgId((32600 if centre.y() >= 0.0 else 32700) + zone)
 
 
-def write_page(path, title, panels, legend_layers, width_mm=300.0, legend_mm=58.0, footer=""):
-    """Panels side by side, the legend at the right, a scale bar below; PNG at `path`."""
+def write_page(path, title, panels, legend_layers, width_mm=300.0, legend_mm=58.0, footer="", extent=None):
+    """Panels side by side, the legend at the right, a scale bar below; PNG at `path`. The map's CRS is that of the lowest
+    layer, `extent` (default: nearly all of that layer) in it."""
     project = QgsProject.instance()
     ground = panels[0].layers[-1]
-    crs = utm_of(ground)
+    crs = ground.crs()
     project.setCrs(crs)
-    extent = QgsCoordinateTransform(ground.crs(), crs, project).transformBoundingBox(ground.extent())
-    extent.scale(0.95)  # the slanted edges of a reprojected raster stay outside the frame
+    if extent is None:
+        extent = ground.extent()
+        extent.scale(0.95)  # the slanted edges of a reprojected raster stay outside the frame
 
     margin, top, gap = 6.0, 24.0 if title else 14.0, 5.0
     each = (width_mm - 2 * margin - legend_mm - gap * len(panels)) / len(panels)
@@ -182,6 +184,11 @@ def write_page(path, title, panels, legend_layers, width_mm=300.0, legend_mm=58.
     image = QgsLayoutExporter(layout).renderPageToImage(0, QSize(), DPI)
     if not image.save(str(path)):
         raise OSError(f"{path} cannot be written")
+
+
+def around(x, y, reach):
+    """The square that holds everything within `reach` of (x, y)."""
+    return QgsRectangle(x - reach, y - reach, x + reach, y + reach)
 
 
 def _label(layout, text, x, y, width, height, size, bold=False):
