@@ -64,7 +64,6 @@ def check_error_block(algorithm, parameters, context):
     for one, other in (
         ("VERTICAL_ACCURACY", "ERROR_RASTER"),
         ("GEOLOGIC_VARIATION", "GEOLOGIC_RASTER"),
-        ("GEOLOGIC_RASTER", "TERRAIN_TYPES"),
     ):
         if given(parameters, one) and given(parameters, other):
             return tr("{}: {} says the same thing; give only one of them.").format(one, other)

@@ -8,8 +8,8 @@ from qgis.core import QgsProcessingException
 
 from .text import tr
 
-# The core's argument -> the parameter of the algorithms. A longer name goes before one that it contains.
-PARAMETER_OF = {
+# The core's arguments in its messages -> the parameters of the algorithms.
+_PARAMETER_OF = {
     "vertical_rmse": "VERTICAL_ACCURACY",
     "horizontal_rmse": "HORIZONTAL_ACCURACY",
     "geologic_variation": "GEOLOGIC_VARIATION",
@@ -22,20 +22,28 @@ PARAMETER_OF = {
     "target_height": "TARGET_HEIGHT",
     "min_distance": "MIN_DISTANCE",
     "max_distance": "MAX_DISTANCE",
-    "azimuth": "AZIMUTH_FROM",
-    "vertical_angle": "ANGLE_FROM",
-    "refraction": "REFRACTION",
-    "confidence": "CONFIDENCE",
+    "vertical_angle": "ANGLE_FROM/ANGLE_TO",
     "vertical_unit": "VERTICAL_UNIT",
     "height_reference": "HEIGHT_REFERENCE",
+    "creation_options": "CREATION_OPTIONS",
+    "see_across_nodata": "SEE_ACROSS_NODATA",
+    "error_model": "ERROR_MODEL",
+}
+# Arguments that are ordinary words too: they count only where a sentence starts with them.
+_WORD_OF = {
+    "azimuth": "AZIMUTH_FROM/AZIMUTH_TO",
+    "confidence": "CONFIDENCE",
     "extent": "EXTENT",
+    "refraction": "REFRACTION",
     "threads": "THREADS",
     "ground": "GROUND",
     "combine": "COMBINE",
     "stand": "STAND",
-    "creation_options": "CREATION_OPTIONS",
+    "band": "BAND",
 }
-_NAMES = re.compile(r"\b(" + "|".join(PARAMETER_OF) + r")\b")
+_NAMES = re.compile(r"\b(" + "|".join(_PARAMETER_OF) + r")\b")
+_WORDS = re.compile(r"^(" + "|".join(_WORD_OF) + r")(?= is | \(| of | must )")
+_PARAMETERS = re.compile("|".join([*_PARAMETER_OF.values(), *_WORD_OF.values()]))
 
 
 def bad_input(parameter, sentence):
@@ -43,10 +51,10 @@ def bad_input(parameter, sentence):
     return QgsProcessingException(f"{parameter}: {sentence}")
 
 
-def parameter_named_in(message):
-    """The parameter that a message of the core is about, or None."""
-    found = _NAMES.search(message)
-    return PARAMETER_OF[found.group(1)] if found else None
+def in_our_words(message):
+    """A message of the core with the names of the parameters in it."""
+    message = _NAMES.sub(lambda found: _PARAMETER_OF[found.group(1)], message)
+    return _WORDS.sub(lambda found: _WORD_OF[found.group(1)], message)
 
 
 @contextmanager
@@ -58,13 +66,12 @@ def core_errors(parameter=None, about=""):
     """
     try:
         yield
-    except ValueError as error:
-        raise _named(str(error), parameter, about) from error
-    except OSError as error:
+    except (ValueError, OSError) as error:
         raise _named(str(error), parameter, about) from error
     except MemoryError as error:
         advice = tr("Reduce MAX_DISTANCE or EXTENT, or close other programs.")
-        raise QgsProcessingException(f"{error or tr('Not enough memory.')} {advice}") from error
+        what = in_our_words(str(error)) or tr("Not enough memory.")
+        raise QgsProcessingException(f"{what} {advice}") from error
     except RuntimeError as error:
         if type(error).__name__ == "Cancelled":
             raise
@@ -73,6 +80,10 @@ def core_errors(parameter=None, about=""):
 
 
 def _named(message, parameter, about):
-    parameter = parameter_named_in(message) or parameter
-    parts = [part for part in (parameter, about, message) if part]
-    return QgsProcessingException(": ".join(parts))
+    message = in_our_words(message)
+    named = _PARAMETERS.search(message)
+    if named and named.start() == 0:
+        parameter = None
+    elif named:
+        parameter = named.group(0)
+    return QgsProcessingException(": ".join(part for part in (parameter, about, message) if part))

@@ -2,7 +2,6 @@
 """Point features become observers in the CRS of the DEM, each with its own heights and limits. Main thread only."""
 
 import re
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from qgis.core import (
@@ -101,26 +100,14 @@ def check_observers(parameters):
     return ""
 
 
-@contextmanager
-def named(places, parameter):
-    """Lets an error of the core about `observers[2]` name the feature instead."""
-    try:
-        yield
-    except ValueError as error:
-        found = re.search(r"\bobservers\[(\d+)\]", str(error))
-        if not found or int(found.group(1)) >= len(places):
-            raise
-        message = str(error).replace(found.group(0), places[int(found.group(1))].label)
-        raise bad_input(parameter, message) from error
-
-
 def core_arguments(places):
-    """The heights and limits as the core takes them: one value per observer."""
+    """Names for messages, and the heights and limits, as the core takes them: one value per observer."""
 
     def column(name):
         return [place.values[name] for place in places]
 
     return {
+        "names": [place.label for place in places],
         "observer_height": column("OBSERVER_HEIGHT"),
         "target_height": column("TARGET_HEIGHT"),
         "min_distance": column("MIN_DISTANCE"),

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Raster layers become paths that the core can open. Main thread only."""
+"""Raster layers become paths that the core can open. Main thread only, but for open_dem."""
 
 from dataclasses import dataclass
 
 from osgeo import gdal, osr
 from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingUtils, QgsRectangle
 
-from .errors import bad_input
+from .errors import bad_input, core_errors
 from .text import tr
 from .values import given
 
@@ -37,6 +37,15 @@ def read_raster(algorithm, parameters, name, context, feedback, band_name=None):
         )
     cell = min(layer.rasterUnitsPerPixelX(), layer.rasterUnitsPerPixelY())
     return Raster(_with_crs_of(layer, path, name, feedback), band, layer.crs(), layer.extent(), cell)
+
+
+def open_dem(sightbound, raster, vertical_unit, feedback):
+    """The core's Dem; what it assumed or converted goes to the log. Any thread."""
+    with core_errors("INPUT"):
+        dem = sightbound.read_dem(raster.path, band=raster.band, vertical_unit=vertical_unit)
+    for note in dem.notes:
+        feedback.pushInfo(note)
+    return dem
 
 
 def read_extent(algorithm, parameters, context, dem):

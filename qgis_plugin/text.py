@@ -27,4 +27,5 @@ def parameter_help(algorithm, parameter):
 
 @lru_cache(maxsize=None)
 def algorithm_help(algorithm):
-    return tr((_HELP / f"{algorithm}.html").read_text(encoding="utf-8"))
+    """One line: QGIS turns every line break into one on the screen."""
+    return tr(" ".join((_HELP / f"{algorithm}.html").read_text(encoding="utf-8").split()))

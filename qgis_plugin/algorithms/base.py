@@ -23,8 +23,8 @@ _HOME = "https://github.com/sightbound/sightbound"
 class SightboundAlgorithm(QgsProcessingAlgorithm):
     """An algorithm gives NAME, TITLE, SUMMARY, TAGS, and two steps:
 
-    read(parameters, context, feedback) in the main thread, the only one that touches layers, and
-    run(sightbound, parameters, context, feedback) in a worker thread, which returns the results.
+    read_input(parameters, context, feedback) in the main thread, the only one that touches layers, and
+    compute(sightbound, parameters, context, feedback) in a worker thread, which returns the results.
     """
 
     NAME = TITLE = SUMMARY = ""
@@ -110,7 +110,7 @@ class SightboundAlgorithm(QgsProcessingAlgorithm):
             if message:
                 raise QgsProcessingException(message)
             self._check_folders(parameters)
-            self.read(parameters, context, feedback)
+            self.read_input(parameters, context, feedback)
         except QgsProcessingException as error:
             self._failure = error
         return True
@@ -121,7 +121,7 @@ class SightboundAlgorithm(QgsProcessingAlgorithm):
         sightbound = self._require_core()
         try:
             with core_errors():
-                return self.run(sightbound, parameters, context, feedback)
+                return self.compute(sightbound, parameters, context, feedback)
         except sightbound.Cancelled:
             feedback.pushInfo(tr("Cancelled: nothing was written."))
             return {}

@@ -19,7 +19,7 @@ from ..error_block import check_error_block, log_error_model, read_error_block
 from ..errors import core_errors
 from ..feedback import Progress
 from ..observer_outputs import write_observer_rasters, write_observer_table
-from ..rasters import creation_options, read_extent, read_raster
+from ..rasters import creation_options, open_dem, read_extent, read_raster
 from ..styling import style_when_loaded
 from ..text import tr
 from ..values import given, word
@@ -111,7 +111,7 @@ class ConfidenceViewshed(SightboundAlgorithm):
             or check_error_block(self, parameters, context)
         )
 
-    def read(self, parameters, context, feedback):
+    def read_input(self, parameters, context, feedback):
         dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
         places, source = observers.read_observers(self, parameters, context, dem)
         self.job = Job(
@@ -141,31 +141,29 @@ class ConfidenceViewshed(SightboundAlgorithm):
             "threads": self.threads(parameters, context),
         }
 
-    def run(self, sightbound, parameters, context, feedback):
+    def compute(self, sightbound, parameters, context, feedback):
         job = self.job
-        with core_errors("INPUT"):
-            dem = sightbound.read_dem(job.dem.path, band=job.dem.band, vertical_unit=job.vertical_unit)
+        dem = open_dem(sightbound, job.dem, job.vertical_unit, feedback)
         arguments = dict(job.arguments, error_model=job.error.model(sightbound))
         if job.ground is not None:
             arguments["ground"] = job.ground.path
         spots = [(place.x, place.y) for place in job.places]
         rasters_too = given(parameters, "OUTPUT_FOLDER")
-        with observers.named(job.places, "OBSERVERS" if job.source else "OBSERVER"):
-            progress = Progress(feedback, 0.0, 50.0 if rasters_too else 95.0)
+        progress = Progress(feedback, 0.0, 50.0 if rasters_too else 95.0)
+        with core_errors("OBSERVERS" if job.source else "OBSERVER"):
             result = sightbound.viewshed(dem, spots, progress=progress, **arguments)
-            self._log(result.report, feedback)
-            results = {}
-            if rasters_too:
-                results["OUTPUT_FOLDER"] = write_observer_rasters(
-                    self, sightbound, dem, job, arguments, parameters, context, feedback
-                )
+        self._log(result.report, feedback)
+        results = {}
+        if rasters_too:
+            results["OUTPUT_FOLDER"] = write_observer_rasters(
+                self, sightbound, dem, job, arguments, parameters, context, feedback
+            )
         feedback.setProgressText(tr("Writing"))
-        results.update(self._write(result, parameters, context))
+        results.update(self._write(result, parameters, context, feedback))
         if given(parameters, "OUTPUT_OBSERVERS"):
             results["OUTPUT_OBSERVERS"] = write_observer_table(self, job, result.report, parameters, context)
         results.update({name: result.report[key] for name, _, key in NUMBERS})
         results["ERROR_MODEL_USED"] = result.report["error_model"]
-        feedback.setProgress(100.0)
         return results
 
     def _log(self, report, feedback):
@@ -175,16 +173,15 @@ class ConfidenceViewshed(SightboundAlgorithm):
         for name, label, key in NUMBERS:
             feedback.pushInfo(f"{tr(label)}: {report[key]:.6g}")
 
-    def _write(self, result, parameters, context):
-        paths, styles = {}, {}
-        for name, _, argument, style, stretch, _, _ in RASTERS:
-            if given(parameters, name):
-                path = self.parameterAsOutputLayer(parameters, name, context)
-                paths[name] = path
-                styles[path] = (style, stretch)
-        arguments = {argument: paths[name] for name, _, argument, *_ in RASTERS if name in paths}
+    def _write(self, result, parameters, context, feedback):
+        wanted = [row for row in RASTERS if given(parameters, row[0])]
+        paths = {row[0]: self.parameterAsOutputLayer(parameters, row[0], context) for row in wanted}
         with core_errors("OUTPUT"):
-            result.write(**arguments, creation_options=self.job.options)
-        for path, (style, stretch) in styles.items():
-            style_when_loaded(context, path, style, stretch)
+            result.write(
+                **{row[2]: paths[row[0]] for row in wanted},
+                creation_options=self.job.options,
+                progress=Progress(feedback, 95.0, 100.0),
+            )
+        for name, _, _, style, stretch, _, _ in wanted:
+            style_when_loaded(context, paths[name], style, stretch)
         return paths

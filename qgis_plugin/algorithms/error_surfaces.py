@@ -13,7 +13,7 @@ from .. import parameters as blocks
 from ..error_block import check_error_block, log_error_model, read_error_block
 from ..errors import core_errors
 from ..feedback import Progress
-from ..rasters import creation_options, read_extent, read_raster
+from ..rasters import creation_options, open_dem, read_extent, read_raster
 from ..styling import style_when_loaded
 from ..text import tr
 from ..values import given, word
@@ -66,16 +66,15 @@ class ErrorSurfaces(SightboundAlgorithm):
     def contradiction(self, parameters, context):
         return self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
 
-    def read(self, parameters, context, feedback):
+    def read_input(self, parameters, context, feedback):
         self.dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
         self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
         self.error = read_error_block(self, parameters, context, feedback, self.dem)
         self.extent = read_extent(self, parameters, context, self.dem)
         self.options = creation_options(self, parameters, context)
 
-    def run(self, sightbound, parameters, context, feedback):
-        with core_errors("INPUT"):
-            dem = sightbound.read_dem(self.dem.path, band=self.dem.band, vertical_unit=self.vertical_unit)
+    def compute(self, sightbound, parameters, context, feedback):
+        dem = open_dem(sightbound, self.dem, self.vertical_unit, feedback)
         surfaces = sightbound.error_surfaces(
             dem,
             error_model=self.error.model(sightbound),
@@ -88,18 +87,18 @@ class ErrorSurfaces(SightboundAlgorithm):
         log_error_model(feedback, used)
         for warning in surfaces.report["warnings"]:
             feedback.pushWarning(warning)
-        results = {"ERROR_MODEL_USED": used}
-        paths = {}
-        for name, _, argument, _ in RASTERS:
-            if given(parameters, name):
-                paths[argument] = results[name] = self.parameterAsOutputLayer(parameters, name, context)
+        wanted = [row for row in RASTERS if given(parameters, row[0])]
+        results = {row[0]: self.parameterAsOutputLayer(parameters, row[0], context) for row in wanted}
         with core_errors("OUTPUT_SIGMA"):
-            surfaces.write(**paths, creation_options=self.options)
-        for name, _, argument, style in RASTERS:
-            if argument in paths:
-                style_when_loaded(context, paths[argument], style, stretch=True)
+            surfaces.write(
+                **{row[2]: results[row[0]] for row in wanted},
+                creation_options=self.options,
+                progress=Progress(feedback, 90.0, 100.0),
+            )
+        for name, _, _, style in wanted:
+            style_when_loaded(context, results[name], style, stretch=True)
+        results["ERROR_MODEL_USED"] = used
         if given(parameters, "OUTPUT_MODEL"):
             results["OUTPUT_MODEL"] = self.parameterAsFileOutput(parameters, "OUTPUT_MODEL", context)
             Path(results["OUTPUT_MODEL"]).write_text(used, encoding="utf-8")
-        feedback.setProgress(100.0)
         return results

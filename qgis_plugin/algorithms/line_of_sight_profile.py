@@ -16,11 +16,12 @@ from .. import parameters as blocks
 from ..defaults import default
 from ..error_block import check_error_block, log_error_model, read_error_block
 from ..errors import core_errors
+from ..feedback import Progress
 from ..line_outputs import write_critical_places, write_lines
 from ..observers import read_points
 from ..pairs import check_pairing, find_pairs
 from ..profile_html import write_profiles
-from ..rasters import read_raster
+from ..rasters import open_dem, read_raster
 from ..text import tr
 from ..values import given, number_or_none, word
 from .base import SightboundAlgorithm
@@ -116,7 +117,7 @@ class LineOfSightProfile(SightboundAlgorithm):
             or check_error_block(self, parameters, context)
         )
 
-    def read(self, parameters, context, feedback):
+    def read_input(self, parameters, context, feedback):
         self.dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
         self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
         self.ground = read_raster(self, parameters, "GROUND", context, feedback)
@@ -142,46 +143,29 @@ class LineOfSightProfile(SightboundAlgorithm):
             "see_across_nodata": self.parameterAsBoolean(parameters, "SEE_ACROSS_NODATA", context),
         }
 
-    def run(self, sightbound, parameters, context, feedback):
-        with core_errors("INPUT"):
-            dem = sightbound.read_dem(self.dem.path, band=self.dem.band, vertical_unit=self.vertical_unit)
-        model, warnings = self._model(sightbound, dem)
-        used = model.to_json()
-        log_error_model(feedback, used)
-        arguments = dict(self.arguments, error_model=model)
+    def compute(self, sightbound, parameters, context, feedback):
+        dem = open_dem(sightbound, self.dem, self.vertical_unit, feedback)
+        arguments = dict(self.arguments, error_model=self.error.model(sightbound))
         if self.ground is not None:
             arguments["ground"] = self.ground.path
-        lines = []
-        for number, (observer, target) in enumerate(self.pairs):
-            if feedback.isCanceled():
-                raise sightbound.Cancelled()
-            lines.append(
-                SightLine(observer, target, self._look(sightbound, dem, observer, target, arguments))
-            )
-            warnings += lines[-1].sight.report["warnings"]
-            feedback.setProgress(95.0 * (number + 1) / len(self.pairs))
-        for warning in dict.fromkeys(warnings):
-            feedback.pushWarning(warning)
-        return self._write(lines, used, parameters, context, feedback)
-
-    def _model(self, sightbound, dem):
-        """One model for all lines: the estimate looks at the whole DEM, so it is made once."""
-        model = self.error.model(sightbound)
-        if model is None:
-            model = sightbound.estimate_error(dem)
-            return model, list(model.report["warnings"])
-        return model, []
-
-    def _look(self, sightbound, dem, observer, target, arguments):
-        with core_errors("TARGETS", tr("{} to {}").format(observer.label, target.label)):
-            return sightbound.line_of_sight(
+        eyes, targets = zip(*self.pairs)
+        with core_errors("TARGETS"):
+            sights = sightbound.lines_of_sight(
                 dem,
-                (observer.x, observer.y),
-                (target.x, target.y),
-                observer_height=observer.values["OBSERVER_HEIGHT"],
-                target_height=target.values["TARGET_HEIGHT"],
+                [(place.x, place.y) for place in eyes],
+                [(place.x, place.y) for place in targets],
+                observer_height=[place.values["OBSERVER_HEIGHT"] for place in eyes],
+                target_height=[place.values["TARGET_HEIGHT"] for place in targets],
+                names=[f"{eye.label} → {target.label}" for eye, target in self.pairs],
+                progress=Progress(feedback, 0.0, 95.0),
                 **arguments,
             )
+        lines = [SightLine(*pair, sight) for pair, sight in zip(self.pairs, sights)]
+        used = sights[0].report["error_model"]
+        log_error_model(feedback, used)
+        for warning in dict.fromkeys(text for sight in sights for text in sight.report["warnings"]):
+            feedback.pushWarning(warning)
+        return self._write(lines, used, parameters, context, feedback)
 
     def _write(self, lines, used, parameters, context, feedback):
         results = {"ERROR_MODEL_USED": used}

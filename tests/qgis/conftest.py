@@ -21,7 +21,12 @@ os.environ["QGIS_CUSTOM_CONFIG_PATH"] = _PROFILE.name
 os.environ["QGIS_PLUGINPATH"] = str(PLUGINS)
 os.environ["PYTHONPATH"] = str(BUILD / "python")
 
-sys.path[:0] = [str(BUILD / "python"), str(PLUGINS), str(Path(__file__).parent), "/usr/share/qgis/python/plugins"]
+sys.path[:0] = [
+    str(BUILD / "python"),
+    str(PLUGINS),
+    str(Path(__file__).parent),
+    "/usr/share/qgis/python/plugins",
+]
 
 
 def pytest_configure(config):

@@ -40,9 +40,15 @@ def test_provider_lists_algorithms_and_model(provider):
 def test_viewshed_has_the_promised_parameters(provider):
     viewshed = provider.algorithm("confidenceviewshed")
     assert names(viewshed.parameterDefinitions()) == {*VIEWSHED, *ERROR_BLOCK}
-    basic = {one.name() for one in viewshed.parameterDefinitions() if not is_advanced(one) and not one.isDestination()}
+    basic = {
+        one.name()
+        for one in viewshed.parameterDefinitions()
+        if not is_advanced(one) and not one.isDestination()
+    }
     assert basic == set(BASIC)
-    shares = {f"{what}_{verdict}" for what in ("AREA", "SHARE") for verdict in ("VISIBLE", "UNCERTAIN", "HIDDEN")}
+    shares = {
+        f"{what}_{verdict}" for what in ("AREA", "SHARE") for verdict in ("VISIBLE", "UNCERTAIN", "HIDDEN")
+    }
     assert shares <= names(viewshed.outputDefinitions())
 
 
@@ -89,8 +95,16 @@ def test_rarely_used_parameters_need_no_value_in_a_model(algorithm):
         for one in algorithm.parameterDefinitions()
         if not one.flags() & QgsProcessingParameterDefinition.Flag.FlagOptional
     }
-    assert needed <= {"INPUT", "OBSERVERS", "TARGETS", "OBSERVER_HEIGHT", "TARGET_HEIGHT", "CONFIDENCE", "OUTPUT",
-                      "OUTPUT_SIGMA"}
+    assert needed <= {
+        "INPUT",
+        "OBSERVERS",
+        "TARGETS",
+        "OBSERVER_HEIGHT",
+        "TARGET_HEIGHT",
+        "CONFIDENCE",
+        "OUTPUT",
+        "OUTPUT_SIGMA",
+    }
 
 
 def test_dialog_hands_over_what_the_algorithm_accepts(algorithm, dem, observers, context):
@@ -98,7 +112,9 @@ def test_dialog_hands_over_what_the_algorithm_accepts(algorithm, dem, observers,
 
     dialog = AlgorithmDialog(algorithm.create())
     given = {"INPUT": dem, "OBSERVERS": observers, "TARGETS": observers}
-    dialog.setParameters({name: value for name, value in given.items() if algorithm.parameterDefinition(name)})
+    dialog.setParameters(
+        {name: value for name, value in given.items() if algorithm.parameterDefinition(name)}
+    )
     values = dialog.createProcessingParameters()
     assert algorithm.checkParameterValues(values, context) == (True, "")
     if "TERRAIN_TABLE" in values:
