@@ -189,33 +189,29 @@ class Oracle:
         self.anti = self.frame.diagonal == "anti"
         rows, cols = self.z.shape
         self.steps = np.array([self.frame.step_lengths(r) for r in range(rows)])
-        self.cell = max(self.steps[rows // 2])
+        # The middle row, the upper of two, in the order in which the diagonal is the main one.
+        self.cell = max(self.steps[rows // 2 if self.anti else (rows - 1) // 2])
         self.amplitude = np.broadcast_to(np.asarray(self.errors.delta, float) / Z95, self.z.shape)
         self.sigma_s = (np.broadcast_to(np.asarray(self.errors.vertical, float), self.z.shape)
                         + self.errors.horizontal * self.slope())
 
     # ---- terrain -------------------------------------------------------------------------------------------------
 
-    def triangles(self, row, col):
-        """The two triangles of the square whose corner of least row and column is (row, col)."""
-        a, b, c, d = (row, col), (row, col + 1), (row + 1, col), (row + 1, col + 1)
-        return ((a, b, c), (b, c, d)) if self.anti else ((a, b, d), (a, c, d))
-
     def slope(self):
-        """tan of the steepest triangle around each sample; nan where none is whole."""
+        """tan of the steepest triangle around each sample (cell size of the sample's row); 0 where none is whole."""
         rows, cols = self.z.shape
-        slope = np.full((rows, cols), np.nan)
-        for row in range(rows - 1):
-            for col in range(cols - 1):
-                for triangle in self.triangles(row, col):
-                    for r, c in triangle:
-                        col_m, row_m = self.steps[r]
-                        points = np.array([(q * col_m, p * row_m, self.z[p, q]) for p, q in triangle])
-                        if np.isnan(points[:, 2]).any():
-                            continue
-                        nx, ny, nz = np.cross(points[1] - points[0], points[2] - points[0])
-                        slope[r, c] = np.nanmax([slope[r, c], math.hypot(nx, ny) / abs(nz)])
-        return np.where(np.isnan(slope), 0.0, slope)
+        steepest = np.zeros((rows, cols))
+        a, b, c, d = ([np.s_[i:rows - 1 + i], np.s_[j:cols - 1 + j]] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)))
+        # Each triangle has one right-angled corner: its legs run along the row and along the column.
+        legs = (((a, b), (a, c), (a, b, c)), ((c, d), (b, d), (b, c, d))) if self.anti else \
+               (((a, b), (b, d), (a, b, d)), ((c, d), (a, c), (a, c, d)))
+        for (c0, c1), (r0, r1), corners in legs:
+            by_col, by_row = self.z[tuple(c1)] - self.z[tuple(c0)], self.z[tuple(r1)] - self.z[tuple(r0)]
+            for corner in corners:
+                col_m, row_m = self.steps[corner[0]].T
+                tan = np.hypot(by_col / col_m[:, None], by_row / row_m[:, None])
+                steepest[tuple(corner)] = np.fmax(steepest[tuple(corner)], tan)
+        return steepest
 
     def corners(self, col, row):
         """(rows, cols, weights), each [3, places]: the samples a place is interpolated from. Outside the samples' hull the

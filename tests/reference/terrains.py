@@ -51,7 +51,11 @@ def plane(shape, by_col=0.0, by_row=0.0, base=100.0):
     return np.float32(base + by_col * c + by_row * r)
 
 
-def with_holes(z, seed, share=0.03):
-    z = z.copy()
-    z[np.random.default_rng(seed).random(z.shape) < share] = np.nan
-    return z
+def with_holes(z, seed, share=0.03, keep=None):
+    """`keep` = (column, row) of a place whose four samples stay."""
+    holed = z.copy()
+    holed[np.random.default_rng(seed).random(z.shape) < share] = np.nan
+    if keep is not None:
+        around = np.s_[int(keep[1]):int(keep[1]) + 2, int(keep[0]):int(keep[0]) + 2]
+        holed[around] = z[around]
+    return holed
