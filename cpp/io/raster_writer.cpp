@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <deque>
 #include <limits>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -127,13 +129,14 @@ void write_blocks(const Grid<T>& grid, GDALRasterBand& band, const gdal::ErrorLo
   }
 }
 
+// Writes under the temporary name of `file`.
 template <class T>
-void write(const std::string& path, const Grid<T>& grid, const Geotransform& geotransform,
-           const std::string& crs_wkt, const RasterMetadata& metadata, int threads, Progress& progress) {
+void write(const WholeFile& file, const std::string& path, const Grid<T>& grid,
+           const Geotransform& geotransform, const std::string& crs_wkt, const RasterMetadata& metadata,
+           int threads, Progress& progress) {
   if (grid.empty()) throw InvalidInput("'" + path + "': there are no cells to write.");
   check_extension(path);
   gdal::register_drivers();
-  WholeFile file(path);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   if (driver == nullptr) throw IoError("This GDAL cannot write GeoTIFF: '" + path + "' is not written.");
   const CPLStringList options = creation_options(*driver, metadata, threads);
@@ -148,7 +151,23 @@ void write(const std::string& path, const Grid<T>& grid, const Geotransform& geo
   dataset.reset();
   if (log.failed()) fail(path, log);  // a full disk may show only when the last blocks are flushed
   progress.check();
+}
+
+template <class T>
+void write_and_keep(const std::string& path, const Grid<T>& grid, const Geotransform& geotransform,
+                    const std::string& crs_wkt, const RasterMetadata& metadata, int threads,
+                    Progress& progress) {
+  WholeFile file(path);
+  write(file, path, grid, geotransform, crs_wkt, metadata, threads, progress);
   file.keep();
+}
+
+void require_different(const std::vector<RasterOutput>& outputs) {
+  std::set<std::string> seen;
+  for (const RasterOutput& output : outputs) {
+    if (seen.insert(output.path).second) continue;
+    throw InvalidInput("'" + output.path + "' is named for two outputs; give each a path of its own.");
+  }
 }
 
 }  // namespace
@@ -156,19 +175,35 @@ void write(const std::string& path, const Grid<T>& grid, const Geotransform& geo
 void write_raster(const std::string& path, const Grid<float>& grid, const Geotransform& geotransform,
                   const std::string& crs_wkt, const RasterMetadata& metadata, int threads,
                   Progress& progress) {
-  write(path, grid, geotransform, crs_wkt, metadata, threads, progress);
+  write_and_keep(path, grid, geotransform, crs_wkt, metadata, threads, progress);
 }
 
 void write_raster(const std::string& path, const Grid<std::uint8_t>& grid, const Geotransform& geotransform,
                   const std::string& crs_wkt, const RasterMetadata& metadata, int threads,
                   Progress& progress) {
-  write(path, grid, geotransform, crs_wkt, metadata, threads, progress);
+  write_and_keep(path, grid, geotransform, crs_wkt, metadata, threads, progress);
 }
 
 void write_raster(const std::string& path, const Grid<std::uint32_t>& grid, const Geotransform& geotransform,
                   const std::string& crs_wkt, const RasterMetadata& metadata, int threads,
                   Progress& progress) {
-  write(path, grid, geotransform, crs_wkt, metadata, threads, progress);
+  write_and_keep(path, grid, geotransform, crs_wkt, metadata, threads, progress);
+}
+
+void write_rasters(const std::vector<RasterOutput>& outputs, const Geotransform& geotransform,
+                   const std::string& crs_wkt, int threads, Progress& progress) {
+  require_different(outputs);
+  std::deque<WholeFile> files;
+  for (const RasterOutput& output : outputs) {
+    const WholeFile& file = files.emplace_back(output.path);
+    std::visit(
+        [&](const auto* grid) {
+          progress.begin(1.0 / static_cast<double>(outputs.size()), static_cast<double>(grid->size()));
+          write(file, output.path, *grid, geotransform, crs_wkt, output.metadata, threads, progress);
+        },
+        output.grid);
+  }
+  for (WholeFile& file : files) file.keep();
 }
 
 }  // namespace sightbound

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "base/progress.h"
@@ -32,5 +33,15 @@ void write_raster(const std::string& path, const Grid<std::uint8_t>&, const Geot
                   const std::string& crs_wkt, const RasterMetadata&, int threads, Progress&);
 void write_raster(const std::string& path, const Grid<std::uint32_t>&, const Geotransform&,
                   const std::string& crs_wkt, const RasterMetadata&, int threads, Progress&);
+
+struct RasterOutput {
+  std::string path;
+  std::variant<const Grid<float>*, const Grid<std::uint8_t>*, const Grid<std::uint32_t>*> grid;
+  RasterMetadata metadata;
+};
+// All files appear together once the last is whole; a failure leaves none of them. Begins `progress` for the
+// whole. Throws as write_raster does, and InvalidInput for two outputs of one path.
+void write_rasters(const std::vector<RasterOutput>&, const Geotransform&, const std::string& crs_wkt,
+                   int threads, Progress&);
 
 }  // namespace sightbound
