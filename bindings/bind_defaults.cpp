@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The defaults of the core under the names they have as Python arguments. Unlimited and "learn it from the
+// DEM" are None.
+#include <cmath>
+
+#include "bindings.h"
+#include <pybind11/stl.h>
+
+#include "error_model/error_model.h"
+#include "jobs/error_surfaces_job.h"
+#include "jobs/option_names.h"
+
+namespace sightbound::python {
+
+namespace {
+
+py::object finite_or_none(double value) {
+  if (std::isfinite(value)) return py::float_(value);
+  return py::none();
+}
+
+py::dict defaults() {
+  using namespace py::literals;
+  const Observer observer;
+  const ViewshedOptions options;
+  const ErrorModel model;
+  return py::dict(
+      "observer_height"_a = observer.height, "target_height"_a = observer.target_height,
+      "min_distance"_a = observer.min_distance, "max_distance"_a = finite_or_none(observer.max_distance),
+      "azimuth"_a = py::make_tuple(observer.azimuth_from, observer.azimuth_to),
+      "vertical_angle"_a = py::make_tuple(observer.angle_from, observer.angle_to),
+      "confidence"_a = options.confidence, "refraction"_a = options.refraction,
+      "curvature"_a = options.curvature, "stand"_a = name_of(options.stand),
+      "combine"_a = name_of(options.combine), "height_reference"_a = name_of(options.height_reference),
+      "see_across_nodata"_a = options.see_across_nodata, "heights"_a = options.heights,
+      "horizontal_rmse"_a = model.horizontal_rmse, "geologic_model"_a = name_of(model.geologic_shape),
+      "vertical_unit"_a = "auto", "band"_a = 1, "terrain_table"_a = default_terrain_table());
+}
+
+}  // namespace
+
+void bind_defaults(py::module_& m) { m.def("defaults", &defaults); }
+
+}  // namespace sightbound::python

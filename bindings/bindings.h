@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One function per concept; each adds its classes and functions to the module sightbound._core. No logic
+// here: what a job means is in cpp/, coercion of arguments and docstrings are in the Python files of
+// sightbound/.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace sightbound::python {
+
+namespace py = pybind11;
+
+void bind_errors(py::module_& m);
+void bind_dem(py::module_& m);
+void bind_error_model(py::module_& m);
+void bind_viewshed(py::module_& m);
+void bind_line_of_sight(py::module_& m);
+void bind_error_surfaces(py::module_& m);
+void bind_defaults(py::module_& m);
+
+}  // namespace sightbound::python

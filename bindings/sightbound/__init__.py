@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sightbound: what can be seen from here, and how sure are we?
+
+    import sightbound as sb
+
+    dem = sb.read_dem("dem.tif")
+    result = sb.viewshed(dem, [(x, y)], observer_height=1.7, max_distance=5000)
+    result.write("confidence.tif", verdict="verdict.tif")
+
+Heights and distances are metres, angles degrees, positions coordinates of the DEM's CRS. Wrong arguments raise
+ValueError, files that cannot be read or written OSError, jobs larger than the memory budget MemoryError, a stopped
+job Cancelled. Jobs leave the interpreter to other threads while they run, and Ctrl-C stops them.
+"""
+
+from ._loading import core as _core
+from .dem import Dem, read_dem
+from .error_estimate import estimate_error
+from .error_model import ErrorModel, terrain_table
+from .error_surfaces import ErrorSurfaces, error_surfaces
+from .line_of_sight import LineOfSight, line_of_sight, lines_of_sight
+from .viewshed import viewshed, viewsheds
+from .viewshed_result import ViewshedResult
+
+Cancelled = _core.Cancelled
+defaults = _core.defaults
+__version__: str = _core.__version__
+
+
+def gdal_version() -> str:
+    """The version of the GDAL library in use, such as "3.6.2"."""
+    return _core.gdal_versions()[1]
+
+
+__all__ = [
+    "Cancelled",
+    "Dem",
+    "ErrorModel",
+    "ErrorSurfaces",
+    "LineOfSight",
+    "ViewshedResult",
+    "defaults",
+    "error_surfaces",
+    "estimate_error",
+    "gdal_version",
+    "line_of_sight",
+    "lines_of_sight",
+    "read_dem",
+    "terrain_table",
+    "viewshed",
+    "viewsheds",
+]

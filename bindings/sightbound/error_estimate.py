@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a DEM itself tells about its error."""
+
+from __future__ import annotations
+
+from ._loading import core
+from .dem import Dem, core_dem
+from .error_model import ErrorModel, core_model
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from ._arguments import Progress
+
+
+def estimate_error(dem: Dem, error_model: ErrorModel | None = None, progress: Progress | None = None) -> ErrorModel:
+    """Learns from the DEM alone what its samples do not tell: what error_model=None does in every job.
+
+    Every other sample is left out to see how far the surface through the others misses it; how that grows from one
+    spacing to the next tells what to expect between the samples. Heights rounded to a step add the step's error.
+
+    Args:
+        dem: the DEM; some blocks spread over it are read.
+        error_model: what is already known; only what it leaves None is estimated.
+        progress: called with the fraction done; False cancels.
+
+    Returns:
+        A complete model. Its `report` holds growth_exponent, typical_sigma and rounding (metres), and warnings.
+
+    Raises:
+        OSError: the file cannot be read.
+        Cancelled: progress returned False.
+    """
+    source = core_dem(dem)
+    given = error_model if error_model is not None else ErrorModel()
+    core_model(given, dem)
+    found = core.estimate(source, progress)
+    report = {
+        "growth_exponent": found.growth_exponent,
+        "typical_sigma": found.typical_m,
+        "rounding": found.rounding_m,
+        "warnings": found.warnings,
+    }
+    # An array stands aside as a number, which the estimate leaves alone.
+    known = given._core.copy()
+    for field in given._arrays:
+        setattr(known, field, 0.0)
+    return ErrorModel._of(core.with_estimate(known, found), given._arrays, report)
