@@ -38,6 +38,11 @@ bool has_sampling_grid(const ErrorModel& model) {
   return model.horizontal_rmse > 0 || !std::holds_alternative<double>(model.vertical_rmse);
 }
 
+// Rasters and arrays may have no value where the DEM has a height.
+bool may_lack(const Quantity& quantity) {
+  return std::holds_alternative<RasterFile>(quantity) || std::holds_alternative<SharedGrid>(quantity);
+}
+
 bool needs_neighbours(const ErrorModel& model) {
   return model.horizontal_rmse > 0 || std::holds_alternative<FromDem>(model.geologic_variation);
 }
@@ -106,25 +111,29 @@ SampleField with_terrain_types(SampleField base, const Job& job) {
   Grid<float> amplitude = terrain_type_variation(*job.model.terrain_types, job.source, job.window, job.progress);
   require_allowed(amplitude, "terrain_types", job.model.terrain_types->path);
   scale(amplitude, 1 / kZ95, job);
-  for (int r = 0; r < amplitude.rows(); ++r) {
+  job.workers.for_each(index(amplitude.rows()), [&](std::size_t at) {
+    const int r = static_cast<int>(at);
     float* row = amplitude.row(r);
     for (int c = 0; c < amplitude.cols(); ++c) {
       if (std::isnan(row[c])) row[c] = base.at(r, c);
     }
-  }
+  });
   return SampleField(std::move(amplitude));
 }
 
-// Where `values` lack one: the height becomes a hole, the value 0. Returns the number of heights lost.
+// Where `field` has no value the height becomes a hole. The value there, which then nobody judges by, becomes the least of
+// all, so that it widens no bound. Returns the number of heights lost.
 std::size_t make_holes(SampleField& field, Grid<float>& heights) {
-  if (field.is_constant()) return 0;
   Grid<float> values = field.release();
+  float least = std::numeric_limits<float>::infinity();
+  for (const float value : values.values()) least = value < least ? value : least;
+  if (std::isinf(least)) least = 0;
   std::size_t lost = 0;
   for (int r = 0; r < heights.rows(); ++r) {
     float *value = values.row(r), *z = heights.row(r);
     for (int c = 0; c < heights.cols(); ++c) {
       if (!std::isnan(value[c])) continue;
-      value[c] = 0;
+      value[c] = least;
       if (!std::isnan(z[c])) ++lost;
       z[c] = std::numeric_limits<float>::quiet_NaN();
     }
@@ -191,8 +200,12 @@ ErrorField resolve_error(const ErrorModel& completed, const DemSource& source, c
   field.amplitude = base_amplitude(job, around ? &*around : nullptr);
   if (completed.terrain_types) field.amplitude = with_terrain_types(std::move(field.amplitude), job);
 
-  warn_of_holes(make_holes(field.sampling, heights), "vertical_rmse", window, warnings);
-  warn_of_holes(make_holes(field.amplitude, heights), "geologic_variation", window, warnings);
+  if (may_lack(completed.vertical_rmse)) {
+    warn_of_holes(make_holes(field.sampling, heights), "vertical_rmse", window, warnings);
+  }
+  if (may_lack(completed.geologic_variation)) {
+    warn_of_holes(make_holes(field.amplitude, heights), "geologic_variation", window, warnings);
+  }
   return field;
 }
 
