@@ -20,22 +20,16 @@ def style_path(style):
 class StyleOnLoad(QgsProcessingLayerPostProcessorInterface):
     """Gives a loaded layer a style. `stretch` fits the colour ramp to the layer's own least and largest value.
 
-    QGIS keeps no reference: the instances live in this class.
+    One instance for each layer: the context deletes it. It does not keep the Python half alive, so this class does.
     """
 
-    _alive = {}
-
-    @classmethod
-    def of(cls, style, stretch=False):
-        key = (style, stretch)
-        if key not in cls._alive:
-            cls._alive[key] = cls(style, stretch)
-        return cls._alive[key]
+    _alive = []
 
     def __init__(self, style, stretch):
         super().__init__()
         self.style = style
         self.stretch = stretch
+        self._alive.append(self)
 
     def postProcessLayer(self, layer, context, feedback):
         message, loaded = layer.loadNamedStyle(style_path(self.style))
@@ -73,4 +67,4 @@ def style_when_loaded(context, output, style, stretch=False):
     """Asks QGIS to style `output` (a path or a sink's id) if it will be loaded."""
     if context.willLoadLayerOnCompletion(output):
         details = context.layerToLoadOnCompletionDetails(output)
-        details.setPostProcessor(StyleOnLoad.of(style, stretch))
+        details.setPostProcessor(StyleOnLoad(style, stretch))
