@@ -27,7 +27,8 @@ float at_most(double value) { return -at_least(-value); }
 
 void bound_row(const ErrorField& field, double z_of_confidence, int r, ErrorSurfaces& out) {
   const bool by_amplitude = field.profile.shape == GeologicShape::kGaussian && field.profile.range_m == 0;
-  const double everywhere = by_amplitude ? 0 : field.largest_profile(r, 0);
+  const bool varies = by_amplitude && !field.amplitude.is_constant();
+  const double of_row = field.largest_profile(r, field.amplitude.constant());
   float *lower = out.lower.row(r), *upper = out.upper.row(r), *sigma = out.sigma.row(r);
   for (int c = 0; c < out.lower.cols(); ++c) {
     const double height = lower[c];  // still the height
@@ -36,7 +37,7 @@ void bound_row(const ErrorField& field, double z_of_confidence, int r, ErrorSurf
       continue;
     }
     const double amplitude = field.amplitude.at(r, c);
-    const double share = by_amplitude ? field.largest_profile(r, amplitude) : everywhere;
+    const double share = varies ? field.largest_profile(r, amplitude) : of_row;
     const double total = std::max(field.sampling.at(r, c) + amplitude * share, kLeastSigma);  // equation 3.5
     sigma[c] = at_least(total);
     lower[c] = at_most(height - z_of_confidence * total);

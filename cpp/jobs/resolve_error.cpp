@@ -30,17 +30,16 @@ struct Job {
   Progress& progress;
 };
 
+// Rasters and arrays: a grid of their own, which may have no value where the DEM has a height.
+bool is_grid(const Quantity& quantity) {
+  return std::holds_alternative<RasterFile>(quantity) || std::holds_alternative<SharedGrid>(quantity);
+}
+
+// What is left to the DEM becomes one number for sigma_v, a map for Delta.
+bool has_sampling_grid(const ErrorModel& model) { return model.horizontal_rmse > 0 || is_grid(model.vertical_rmse); }
+
 bool has_geologic_grid(const ErrorModel& model) {
   return model.terrain_types.has_value() || !std::holds_alternative<double>(model.geologic_variation);
-}
-
-bool has_sampling_grid(const ErrorModel& model) {
-  return model.horizontal_rmse > 0 || !std::holds_alternative<double>(model.vertical_rmse);
-}
-
-// Rasters and arrays may have no value where the DEM has a height.
-bool may_lack(const Quantity& quantity) {
-  return std::holds_alternative<RasterFile>(quantity) || std::holds_alternative<SharedGrid>(quantity);
 }
 
 bool needs_neighbours(const ErrorModel& model) {
@@ -200,10 +199,10 @@ ErrorField resolve_error(const ErrorModel& completed, const DemSource& source, c
   field.amplitude = base_amplitude(job, around ? &*around : nullptr);
   if (completed.terrain_types) field.amplitude = with_terrain_types(std::move(field.amplitude), job);
 
-  if (may_lack(completed.vertical_rmse)) {
+  if (is_grid(completed.vertical_rmse)) {
     warn_of_holes(make_holes(field.sampling, heights), "vertical_rmse", window, warnings);
   }
-  if (may_lack(completed.geologic_variation)) {
+  if (is_grid(completed.geologic_variation)) {
     warn_of_holes(make_holes(field.amplitude, heights), "geologic_variation", window, warnings);
   }
   return field;

@@ -235,7 +235,7 @@ TEST(ResolveError, MemoryIsToldBeforehand) {
   const Window w{0, 0, 100, 10};
   const std::size_t grid = w.cells() * sizeof(float);
   EXPECT_EQ(resolve_error_memory(given(1, 1), w).peak, 0u);
-  EXPECT_EQ(resolve_error_memory(ErrorModel(), w).kept, 2 * grid);
+  EXPECT_EQ(resolve_error_memory(ErrorModel(), w).kept, grid);
   ErrorModel slopes = given(1, 1);
   slopes.horizontal_rmse = 1;
   EXPECT_EQ(resolve_error_memory(slopes, w).kept, grid);
