@@ -67,7 +67,6 @@ ErrorSurfaces run_error_surfaces(const DemSource& source, const ErrorModel& mode
   MemoryBudget(options.memory_budget)
       .require(out.memory_bytes, "The error of " + std::to_string(window.cols) + " x " + std::to_string(window.rows) + " cells",
                "Give a smaller extent, or a larger memory budget.");
-  out.warnings = source.notes();
 
   progress.begin(0.1, 1);
   const ErrorModel completed = complete_model(model, source, out.warnings, progress);
@@ -91,6 +90,8 @@ ErrorSurfaces run_error_surfaces(const DemSource& source, const ErrorModel& mode
   out.geotransform = delivered_geotransform(source, window);
   out.crs_wkt = source.crs_wkt();
   out.error_model = completed.describe();
+  const std::vector<std::string> notes = source.notes();  // reading adds to them
+  out.warnings.insert(out.warnings.begin(), notes.begin(), notes.end());
   progress.finish();
   return out;
 }
