@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/raster_dem.h"
 
+#include <chrono>
 #include <mutex>
+#include <thread>
 #include <utility>
 
 #include "base/error.h"
@@ -23,13 +25,14 @@ class RasterDem final : public DemSource {
       : DemSource(dataset->GetRasterYSize(), dataset->GetRasterXSize(), geotransform, std::move(crs_wkt)),
         dataset_(std::move(dataset)),
         band_(std::move(band)) {
-    notes_ = std::move(notes);
+    for (std::string& note : notes) add_note(std::move(note));
   }
 
   Grid<float> read(const Window& wanted, Progress& progress) const override {
     if (!window().contains(wanted)) throw BrokenGuarantee("a window outside the DEM was asked for");
     Window in_file = wanted;
     if (flipped()) in_file.row = rows() - wanted.row_end();
+    const std::unique_lock reading = wait_for_turn(progress);
     BandValues read = read_band(band_, in_file, flipped(), progress);
     note(read.counts);
     return std::move(read.values);
@@ -57,16 +60,28 @@ class RasterDem final : public DemSource {
 
   void set_note(std::size_t& place, std::string text) const {
     if (place == kNoPlace) {
-      place = notes_.size();
-      notes_.emplace_back();
+      place = add_note(std::move(text));
+    } else {
+      change_note(place, std::move(text));
     }
-    notes_[place] = std::move(text);
   }
 
+  // GDAL's handles serve one thread at a time. Whoever waits for another job's reading can still be cancelled.
+  std::unique_lock<std::recursive_mutex> wait_for_turn(Progress& progress) const {
+    std::unique_lock turn(one_reader_, std::try_to_lock);
+    while (!turn.owns_lock() && !turn.try_lock()) {
+      progress.check();
+      std::this_thread::sleep_for(kTurnInterval);
+    }
+    return turn;
+  }
+
+  static constexpr std::chrono::milliseconds kTurnInterval{2};
   static constexpr std::size_t kNoPlace = static_cast<std::size_t>(-1);
 
   GDALDatasetUniquePtr dataset_;
   Band band_;
+  mutable std::recursive_mutex one_reader_;  // recursive: a progress callback may look at the DEM being read
   mutable DecodingCounts most_;
   mutable std::size_t spike_note_ = kNoPlace, mark_note_ = kNoPlace;
 };
@@ -79,17 +94,14 @@ std::unique_ptr<DemSource> open_dem(const std::string& path, int band_number, Ve
   const Geotransform geotransform(gdal::geotransform_of(*dataset, path, kWhat));
   std::string crs_wkt = gdal::crs_wkt_of(dataset->GetSpatialRef());
 
-  std::vector<std::string> notes;
   if (crs_wkt.empty()) {
     refuse_degrees_without_crs(geotransform, dataset->GetRasterYSize(), dataset->GetRasterXSize());
-    notes.emplace_back("The DEM has no CRS: its coordinates are taken as metres on a plane.");
   }
   const char* band_unit = dataset->GetRasterBand(band_number)->GetUnitType();
   VerticalScale scale = choose_vertical_unit(unit, crs_units(crs_wkt), band_unit != nullptr ? band_unit : "");
   band.decoder.metres_per_unit = scale.metres_per_unit;
-  for (std::string& note : scale.notes) notes.push_back(std::move(note));
   return std::make_unique<RasterDem>(std::move(dataset), std::move(band), geotransform, std::move(crs_wkt),
-                                     std::move(notes));
+                                     std::move(scale.notes));
 }
 
 }  // namespace sightbound

@@ -166,7 +166,7 @@ void require_different(const std::vector<RasterOutput>& outputs) {
   std::set<std::string> seen;
   for (const RasterOutput& output : outputs) {
     if (seen.insert(output.path).second) continue;
-    throw InvalidInput("'" + output.path + "' is named for two outputs; give each a path of its own.");
+    throw InvalidInput("'" + output.path + "' is named twice; give each output a path of its own.");
   }
 }
 

@@ -19,6 +19,23 @@ DemSource::DemSource(int rows, int cols, const Geotransform& geotransform, std::
     throw InvalidInput("The DEM has " + std::to_string(rows) + " x " + std::to_string(cols) +
                        " samples; at least 2 x 2 are needed to make a surface.");
   }
+  if (crs_wkt_.empty()) add_note("The DEM has no CRS: its coordinates are taken as metres on a plane.");
+}
+
+std::vector<std::string> DemSource::notes() const {
+  const std::scoped_lock locked(notes_mutex_);
+  return notes_;
+}
+
+std::size_t DemSource::add_note(std::string text) const {
+  const std::scoped_lock locked(notes_mutex_);
+  notes_.push_back(std::move(text));
+  return notes_.size() - 1;
+}
+
+void DemSource::change_note(std::size_t place, std::string text) const {
+  const std::scoped_lock locked(notes_mutex_);
+  notes_[place] = std::move(text);
 }
 
 ArrayDem::ArrayDem(Heights heights, const Geotransform& geotransform, std::string crs_wkt)

@@ -5,7 +5,9 @@
 // sample (r, c) to (r + 1, c + 1). Outputs go back to the order of the user's raster at the boundary (`flipped`).
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -28,23 +30,27 @@ class DemSource {
   // True when the core's rows run against the user's.
   bool flipped() const { return flipped_; }
 
-  // Heights of a window in metres, NaN where there are none. Safe to call from one thread at a time.
+  // Heights of a window in metres, NaN where there are none. Several jobs may read one DEM at the same time.
   virtual Grid<float> read(const Window&, Progress&) const = 0;
 
   // What was assumed or converted on the way (vertical unit, missing CRS, suspicious values), for the report. Reading may
   // add to them: ask after it.
-  const std::vector<std::string>& notes() const { return notes_; }
+  std::vector<std::string> notes() const;
 
  protected:
   // `geotransform` is the user's; rows are flipped here when the diagonal asks for it.
   DemSource(int rows, int cols, const Geotransform& geotransform, std::string crs_wkt);
-  mutable std::vector<std::string> notes_;
+  // Returns the place of the note, for change_note().
+  std::size_t add_note(std::string text) const;
+  void change_note(std::size_t place, std::string text) const;
 
  private:
   int rows_, cols_;
   bool flipped_;
   Geotransform geotransform_;
   std::string crs_wkt_;
+  mutable std::mutex notes_mutex_;
+  mutable std::vector<std::string> notes_;
 };
 
 // Heights held by somebody else (a numpy array, kept alive by `owner`), in the user's row order.
