@@ -40,8 +40,4 @@ def estimate_error(dem: Dem, error_model: ErrorModel | None = None, progress: Pr
         "rounding": found.rounding_m,
         "warnings": found.warnings,
     }
-    # An array stands aside as a number, which the estimate leaves alone.
-    known = given._core.copy()
-    for field in given._arrays:
-        setattr(known, field, 0.0)
-    return ErrorModel._of(core.with_estimate(known, found), given._arrays, report)
+    return ErrorModel._of(core.with_estimate(given._core, found), given._arrays, report)

@@ -209,8 +209,8 @@ class ErrorModel:
         found = quantities.from_argument(field, value)
         if hasattr(found, "dtype"):
             self._arrays[field] = found
-        else:
-            setattr(self._core, field, found)
+            found = 0.0  # stands for the array until the DEM is known: something is given
+        setattr(self._core, field, found)
 
     def _get(self, field: str) -> Any:
         if field in self._arrays:
