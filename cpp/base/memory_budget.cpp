@@ -28,7 +28,8 @@ std::size_t physical_memory() {
   return GlobalMemoryStatusEx(&status) ? static_cast<std::size_t>(status.ullTotalPhys) : kLeastAssumed;
 #else
   const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
-  return pages > 0 && page > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(page) : kLeastAssumed;
+  return pages > 0 && page > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(page)
+                               : kLeastAssumed;
 #endif
 }
 
@@ -58,7 +59,8 @@ MemoryBudget::MemoryBudget(std::size_t bytes) : bytes_(bytes > 0 ? bytes : usabl
 
 void MemoryBudget::require(std::size_t bytes, const std::string& what, const std::string& remedy) const {
   if (bytes <= bytes_) return;
-  throw OverBudget(what + " needs " + amount(bytes) + " of memory, more than the budget of " + amount(bytes_) + ". " + remedy);
+  throw OverBudget(what + " needs " + amount(bytes) + " of memory, more than the budget of " +
+                   amount(bytes_) + ". " + remedy);
 }
 
 }  // namespace sightbound

@@ -9,7 +9,8 @@ namespace sightbound {
 
 class MemoryBudget {
  public:
-  // 0 = three quarters of the memory that this process may use (the machine's, or its container's when that is less).
+  // 0 = three quarters of the memory that this process may use (the machine's, or its container's when that
+  // is less).
   explicit MemoryBudget(std::size_t bytes = 0);
 
   std::size_t bytes() const { return bytes_; }

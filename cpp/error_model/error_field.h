@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The error model resolved on one window of a DEM: what sight and the error surfaces compute with.
 //
-// Both parts of sigma are linear on each triangle between the values at the samples; the geologic part is scaled by
-// a function of the distance to the nearest sample. Values are finite and >= 0 everywhere, nodata samples included.
+// Both parts of sigma are linear on each triangle between the values at the samples; the geologic part is
+// scaled by a function of the distance to the nearest sample. Values are finite and >= 0 everywhere, nodata
+// samples included.
 #pragma once
 
 #include <cstddef>
@@ -18,9 +19,9 @@ namespace sightbound {
 // How the between-sample error grows with the distance d (metres) to the nearest sample: 0 at a sample.
 struct GrowthProfile {
   GeologicShape shape = GeologicShape::kGaussian;
-  double range_m = 0;        // 0 = the paper's f(Delta) = Delta^2
-  double exponent = 1;       // kGrowth
-  double half_spacing_m = 1; // kGrowth: L / 2
+  double range_m = 0;         // 0 = the paper's f(Delta) = Delta^2
+  double exponent = 1;        // kGrowth
+  double half_spacing_m = 1;  // kGrowth: L / 2
 
   // 1 - P(d), by definition: other implementations are tested against this one. Never falls as d grows.
   // `amplitude` = Delta / z(0.95) at the place, metres (used by the paper's f(Delta) only).
@@ -38,7 +39,7 @@ class SampleField {
   float constant() const { return constant_; }
   const Grid<float>& values() const { return values_; }
   float at(int row, int col) const { return is_constant() ? constant_ : values_.at(row, col); }
-  Grid<float> release() { return std::move(values_); }  // leaves the constant behind
+  Grid<float> release() { return std::exchange(values_, {}); }  // leaves the constant behind
 
  private:
   float constant_ = 0;
@@ -49,9 +50,9 @@ struct ErrorField {
   SampleField sampling;   // sigma_s, metres
   SampleField amplitude;  // Delta / z(0.95), metres; multiply by profile(d)
   GrowthProfile profile;
-  std::vector<CellSize> cell_sizes;  // one per row of the window, at the DEM's middle column (so that windows agree)
-  std::vector<double> farthest;      // one per row: the largest distance to the sample within its cell, metres
-  double larger_side_m = 0;          // L
+  std::vector<CellSize> cell_sizes;  // one per row, at the DEM's middle column (so that windows agree)
+  std::vector<double> farthest;  // one per row: the largest distance to the sample within its cell, metres
+  double larger_side_m = 0;      // L
 
   // Largest profile value anywhere in a cell of `row` with that amplitude.
   double largest_profile(int row, double amplitude_there) const {

@@ -20,12 +20,16 @@ std::string text(double value) {
   return out.str();
 }
 
-void require_between(const std::string& field, double value, double least, double largest, const std::string& unit) {
+void require_between(const std::string& field, double value, double least, double largest,
+                     const std::string& unit) {
   if (std::isfinite(value) && value >= least && value <= largest) return;
-  throw InvalidInput(field + " is " + text(value) + "; allowed are " + text(least) + " to " + text(largest) + unit + ".");
+  throw InvalidInput(field + " is " + text(value) + "; allowed are " + text(least) + " to " + text(largest) +
+                     unit + ".");
 }
 
-void require_error(const std::string& field, double metres) { require_between(field, metres, 0, kLargestError, " m"); }
+void require_error(const std::string& field, double metres) {
+  require_between(field, metres, 0, kLargestError, " m");
+}
 
 void validate_quantity(const std::string& field, const Quantity& quantity) {
   if (const auto* number = std::get_if<double>(&quantity)) require_error(field, *number);
@@ -36,7 +40,8 @@ void validate_quantity(const std::string& field, const Quantity& quantity) {
     }
   }
   if (const auto* array = std::get_if<SharedGrid>(&quantity)) {
-    if (!*array || (*array)->empty()) throw InvalidInput(field + " is an empty array; give one value per DEM cell.");
+    if (!*array || (*array)->empty())
+      throw InvalidInput(field + " is an empty array; give one value per DEM cell.");
   }
 }
 
@@ -50,34 +55,39 @@ void validate_shape(const ErrorModel& model) {
     }
     require_between("geologic_range", range, 0, kLargestRange, " m");
     if (from_dem) {
-      throw InvalidInput("geologic_range is " + text(range) +
-                         ", but geologic_variation is left to be estimated, and the estimate measures its own growth with "
-                         "distance. Give geologic_variation too, or leave geologic_range out.");
+      throw InvalidInput(
+          "geologic_range is " + text(range) +
+          ", but geologic_variation is left to be estimated, and the estimate measures its own growth with "
+          "distance. Give geologic_variation too, or leave geologic_range out.");
     }
     if (model.geologic_shape == GeologicShape::kGrowth) {
-      throw InvalidInput("geologic_range is " + text(range) +
-                         ", but the geologic model 'growth' has none; leave it out, or choose 'gaussian' or 'step'.");
+      throw InvalidInput(
+          "geologic_range is " + text(range) +
+          ", but the geologic model 'growth' has none; leave it out, or choose 'gaussian' or 'step'.");
     }
   }
   if (model.geologic_shape == GeologicShape::kStep) {
     if (from_dem) {
-      throw InvalidInput("The geologic model 'step' needs a geologic_variation; without one the estimate measures its own "
-                         "growth with distance. Give geologic_variation, or choose 'gaussian'.");
+      throw InvalidInput(
+          "The geologic model 'step' needs a geologic_variation; without one the estimate measures its own "
+          "growth with distance. Give geologic_variation, or choose 'gaussian'.");
     }
     if (!model.geologic_range) {
-      throw InvalidInput("The geologic model 'step' needs a geologic_range: the distance in metres from a sample up to "
-                         "which the surface is trusted.");
+      throw InvalidInput(
+          "The geologic model 'step' needs a geologic_range: the distance in metres from a sample up to "
+          "which the surface is trusted.");
     }
   }
   if (model.growth_exponent) {
     require_between("growth_exponent", *model.growth_exponent, kLeastExponent, kLargestExponent, "");
     if (!from_dem && model.geologic_shape != GeologicShape::kGrowth) {
-      throw InvalidInput("growth_exponent is given, but the geologic model is '" + name_of(model.geologic_shape) +
-                         "'; choose 'growth', or leave it out.");
+      throw InvalidInput("growth_exponent is given, but the geologic model is '" +
+                         name_of(model.geologic_shape) + "'; choose 'growth', or leave it out.");
     }
   } else if (!from_dem && model.geologic_shape == GeologicShape::kGrowth) {
-    throw InvalidInput("The geologic model 'growth' needs a growth_exponent between " + text(kLeastExponent) + " and " +
-                       text(kLargestExponent) + " (bare earth: about 1), or no geologic_variation, to estimate both.");
+    throw InvalidInput("The geologic model 'growth' needs a growth_exponent between " + text(kLeastExponent) +
+                       " and " + text(kLargestExponent) +
+                       " (bare earth: about 1), or no geologic_variation, to estimate both.");
   }
   if (model.typical_m) require_error("typical_m", *model.typical_m);
 }
@@ -85,7 +95,8 @@ void validate_shape(const ErrorModel& model) {
 void validate_types(const TerrainTypes& types) {
   if (types.path.empty()) throw InvalidInput("terrain_types has no path; name a file of polygons.");
   if (types.field.empty()) {
-    throw InvalidInput("terrain_field is missing; name the attribute of terrain_types that holds metres or a class.");
+    throw InvalidInput(
+        "terrain_field is missing; name the attribute of terrain_types that holds metres or a class.");
   }
   for (const auto& [name, metres] : types.table) require_error("terrain_table['" + name + "']", metres);
 }
@@ -94,9 +105,12 @@ void validate_types(const TerrainTypes& types) {
 
 std::string name_of(GeologicShape shape) {
   switch (shape) {
-    case GeologicShape::kGaussian: return "gaussian";
-    case GeologicShape::kStep: return "step";
-    case GeologicShape::kGrowth: return "growth";
+    case GeologicShape::kGaussian:
+      return "gaussian";
+    case GeologicShape::kStep:
+      return "step";
+    case GeologicShape::kGrowth:
+      return "growth";
   }
   throw BrokenGuarantee("unknown GeologicShape");
 }
@@ -117,7 +131,8 @@ void ErrorModel::validate() const {
 }
 
 bool ErrorModel::needs_estimate() const {
-  const bool geologic = std::holds_alternative<FromDem>(geologic_variation) && !(growth_exponent && typical_m);
+  const bool geologic =
+      std::holds_alternative<FromDem>(geologic_variation) && !(growth_exponent && typical_m);
   return geologic || std::holds_alternative<FromDem>(vertical_rmse);
 }
 

@@ -2,8 +2,8 @@
 // What the user says of a DEM's error (paper section 3; design: docs/concepts/error_model.md).
 //
 //   sigma_s = sigma_v + sigma_h tan(slope)                 sampling error, Koppe
-//   sigma_g(d) = (1 - P(d)) Delta / z(0.95)                 between samples, d = distance to the nearest sample
-//   sigma = max(sigma_s + sigma_g, 1 mm)                    equation 3.5
+//   sigma_g(d) = (1 - P(d)) Delta / z(0.95)                 between samples, d = distance to the nearest
+//   sample sigma = max(sigma_s + sigma_g, 1 mm)                    equation 3.5
 #pragma once
 
 #include <map>
@@ -16,8 +16,8 @@
 
 namespace sightbound {
 
-inline constexpr double kLeastSigma = 1e-3;  // metres; keeps clearance ratios finite
-inline constexpr double kLargestError = 1e4;  // metres; a larger sigma or Delta is taken for a slip
+inline constexpr double kLeastSigma = 1e-3;        // metres; keeps clearance ratios finite
+inline constexpr double kLargestError = 1e4;       // metres; a larger sigma or Delta is taken for a slip
 inline constexpr double kZ95 = 1.959963984540054;  // two_sided_quantile(0.95)
 
 // A raster file, aligned to the DEM by its georeference when used.
@@ -38,27 +38,29 @@ enum class GeologicShape {
   kStep,      // P = 1 below the range, else 0
   kGrowth,    // 1 - P = (2 d / L)^H, L the larger cell side: what decimating a DEM shows
 };
-std::string name_of(GeologicShape shape);                  // "gaussian", "step", "growth"
+std::string name_of(GeologicShape shape);                    // "gaussian", "step", "growth"
 GeologicShape geologic_shape_from(const std::string& name);  // throws InvalidInput
 
-// Polygons that say what lies between the samples; the one under a sample counts, the largest value on overlap.
+// Polygons that say what lies between the samples; the one under a sample counts, the largest value on
+// overlap.
 struct TerrainTypes {
-  std::string path;    // any OGR layer, any CRS
-  std::string layer;   // empty = first
-  std::string field;   // metres, or the name of a class
+  std::string path;                     // any OGR layer, any CRS
+  std::string layer;                    // empty = first
+  std::string field;                    // metres, or the name of a class
   std::map<std::string, double> table;  // class -> Delta in metres; empty = default_terrain_table()
 };
 
-// A model is complete when nothing is left to learn from the DEM: vertical_rmse is not FromDem, and a geologic_variation
-// that is FromDem has its growth_exponent and typical_m. Such a FromDem means: the local map, made on each window.
+// A model is complete when nothing is left to learn from the DEM: vertical_rmse is not FromDem, and a
+// geologic_variation that is FromDem has its growth_exponent and typical_m. Such a FromDem means: the local
+// map, made on each window.
 struct ErrorModel {
-  Quantity vertical_rmse = FromDem{};       // sigma_v, metres (one standard deviation)
-  double horizontal_rmse = 0;               // sigma_h, metres (one standard deviation of the position along one axis)
+  Quantity vertical_rmse = FromDem{};  // sigma_v, metres (one standard deviation)
+  double horizontal_rmse = 0;  // sigma_h, metres (one standard deviation of the position along one axis)
   Quantity geologic_variation = FromDem{};  // Delta, metres: the largest rise between samples, at 95 %
   GeologicShape geologic_shape = GeologicShape::kGaussian;  // kGrowth when geologic_variation is FromDem
-  std::optional<double> geologic_range;     // metres; never with kGrowth
-  std::optional<double> growth_exponent;    // H, for kGrowth
-  std::optional<double> typical_m;          // sd half a spacing from a sample, where the local map has no answer
+  std::optional<double> geologic_range;                     // metres; never with kGrowth
+  std::optional<double> growth_exponent;                    // H, for kGrowth
+  std::optional<double> typical_m;  // sd half a spacing from a sample, where the local map has no answer
   std::optional<TerrainTypes> terrain_types;
 
   // Throws InvalidInput naming field, value and allowed range.
@@ -66,12 +68,14 @@ struct ErrorModel {
   // True when something is still to be learnt from the DEM (estimate.h).
   bool needs_estimate() const;
 
-  // Rasters stay paths; arrays cannot be written (InvalidInput). from_json(to_json()) is the same model, to the last bit.
-  // from_json throws InvalidInput for text that is not such a model, unknown names included; it does not validate().
+  // Rasters stay paths; arrays cannot be written (InvalidInput). from_json(to_json()) is the same model, to
+  // the last bit. from_json throws InvalidInput for text that is not such a model, unknown names included; it
+  // does not validate().
   std::string to_json() const;
   static ErrorModel from_json(const std::string& text);
 
-  // to_json for reports and metadata: never throws; an array stands as {"array": [rows, cols]}, which from_json refuses.
+  // to_json for reports and metadata: never throws; an array stands as {"array": [rows, cols]}, which
+  // from_json refuses.
   std::string describe() const;
 };
 

@@ -3,11 +3,12 @@
 //   1.5                                                  metres
 //   {"raster": "sigma.tif", "band": 1}                   a raster file
 //   {"from_dem": {}}, also null                          to be learnt from the DEM
-//   {"from_dem": {"exponent": 0.93, "typical_m": 1.2}}   learnt: local map with this growth (geologic_variation only)
-#include <nlohmann/json.hpp>
-
+//   {"from_dem": {"exponent": 0.93, "typical_m": 1.2}}   learnt: local map with this growth
+//   (geologic_variation only)
 #include <initializer_list>
 #include <string>
+
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "error_model/error_model.h"
@@ -58,7 +59,8 @@ struct QuantityToJson {
   Json operator()(const RasterFile& raster) const { return {{"raster", raster.path}, {"band", raster.band}}; }
   Json operator()(const SharedGrid& array) const {
     if (arrays_allowed) return {{"array", {array->rows(), array->cols()}}};
-    throw InvalidInput(field + " is an array, which cannot be written as JSON; save it as a raster and give its path.");
+    throw InvalidInput(
+        field + " is an array, which cannot be written as JSON; save it as a raster and give its path.");
   }
 };
 
@@ -66,21 +68,24 @@ Quantity quantity_from(const Json& value, const std::string& field) {
   if (value.is_null()) return FromDem{};
   if (value.is_number()) return value.get<double>();
   if (!value.is_object()) {
-    refuse(field + " is " + value.dump() + R"(; give metres, {"raster": path, "band": 1} or {"from_dem": {}}.)");
+    refuse(field + " is " + value.dump() +
+           R"(; give metres, {"raster": path, "band": 1} or {"from_dem": {}}.)");
   }
   if (value.contains("from_dem")) {
     require_known(value, field, {"from_dem"});
     return FromDem{};
   }
   if (value.contains("array")) {
-    refuse(field + " was an array, which is not part of this text; give it again, as an array or as a raster.");
+    refuse(field +
+           " was an array, which is not part of this text; give it again, as an array or as a raster.");
   }
   require_known(value, field, {"raster", "band"});
   RasterFile raster;
   if (!value.contains("raster")) refuse(field + " has no 'raster'; name the file.");
   raster.path = string(value["raster"], field + ".raster");
   if (value.contains("band")) {
-    if (!value["band"].is_number_integer()) refuse(field + ".band is " + value["band"].dump() + "; an integer is needed.");
+    if (!value["band"].is_number_integer())
+      refuse(field + ".band is " + value["band"].dump() + "; an integer is needed.");
     raster.band = value["band"].get<int>();
   }
   return raster;
@@ -96,7 +101,8 @@ void read_recipe(const Json& value, ErrorModel& model) {
 }
 
 Json to_json(const TerrainTypes& types) {
-  Json out = {{"path", types.path}, {"layer", types.layer}, {"field", types.field}, {"table", Json::object()}};
+  Json out = {
+      {"path", types.path}, {"layer", types.layer}, {"field", types.field}, {"table", Json::object()}};
   for (const auto& [name, metres] : types.table) out["table"][name] = metres;
   return out;
 }
@@ -108,7 +114,8 @@ TerrainTypes types_from(const Json& value) {
   if (value.contains("layer")) types.layer = string(value["layer"], "terrain_types.layer");
   if (value.contains("field")) types.field = string(value["field"], "terrain_types.field");
   if (value.contains("table")) {
-    if (!value["table"].is_object()) refuse("terrain_types.table is " + value["table"].dump() + "; an object {...} is needed.");
+    if (!value["table"].is_object())
+      refuse("terrain_types.table is " + value["table"].dump() + "; an object {...} is needed.");
     for (const auto& item : value["table"].items()) {
       types.table[item.key()] = number(item.value(), "terrain_types.table." + item.key());
     }
@@ -118,14 +125,15 @@ TerrainTypes types_from(const Json& value) {
 
 ErrorModel model_from(const Json& json) {
   require_known(json, "The model",
-                {kFormat, "vertical_rmse", "horizontal_rmse", "geologic_variation", "geologic_model", "geologic_range",
-                 "growth_exponent", "terrain_types"});
+                {kFormat, "vertical_rmse", "horizontal_rmse", "geologic_variation", "geologic_model",
+                 "geologic_range", "growth_exponent", "terrain_types"});
   if (json.contains(kFormat) && json[kFormat] != kFormatVersion) {
     refuse(std::string(kFormat) + " is " + json[kFormat].dump() + "; this version of Sightbound reads " +
            std::to_string(kFormatVersion) + ".");
   }
   ErrorModel model;
-  if (json.contains("vertical_rmse")) model.vertical_rmse = quantity_from(json["vertical_rmse"], "vertical_rmse");
+  if (json.contains("vertical_rmse"))
+    model.vertical_rmse = quantity_from(json["vertical_rmse"], "vertical_rmse");
   if (const auto metres = optional_number(json, "horizontal_rmse")) model.horizontal_rmse = *metres;
   if (json.contains("geologic_model")) {
     model.geologic_shape = geologic_shape_from(string(json["geologic_model"], "geologic_model"));
@@ -146,7 +154,8 @@ std::string written(const ErrorModel& model, bool arrays_allowed) {
   Json json = {{kFormat, kFormatVersion}};
   json["vertical_rmse"] = std::visit(QuantityToJson{"vertical_rmse", arrays_allowed}, model.vertical_rmse);
   json["horizontal_rmse"] = model.horizontal_rmse;
-  json["geologic_variation"] = std::visit(QuantityToJson{"geologic_variation", arrays_allowed}, model.geologic_variation);
+  json["geologic_variation"] =
+      std::visit(QuantityToJson{"geologic_variation", arrays_allowed}, model.geologic_variation);
   json["geologic_model"] = name_of(model.geologic_shape);
   if (model.geologic_range) json["geologic_range"] = *model.geologic_range;
   if (std::holds_alternative<FromDem>(model.geologic_variation)) {

@@ -3,8 +3,8 @@
 //
 //   e_q = z - (z before + z after) / 2, neighbours q away along the row, the column and the NW-SE diagonal
 //
-// H comes from rows and columns alone, at the same places for both q; the diagonal, sqrt2 times as far, joins in
-// afterwards as e / sqrt2^H. The same three residuals make the local map (local_variation.h).
+// H comes from rows and columns alone, at the same places for both q; the diagonal, sqrt2 times as far, joins
+// in afterwards as e / sqrt2^H. The same three residuals make the local map (local_variation.h).
 #include "error_model/estimate.h"
 
 #include <algorithm>
@@ -19,14 +19,14 @@ namespace sightbound {
 
 namespace {
 
-constexpr std::size_t kEnough = 1000;      // places; with fewer, further blocks are read
-constexpr std::size_t kFewest = 64;        // places that H may be measured on
-constexpr double kUsualExponent = 1;       // bare earth: median 1.0-1.1 of sixteen lidar terrains
+constexpr std::size_t kEnough = 1000;  // places; with fewer, further blocks are read
+constexpr std::size_t kFewest = 64;    // places that H may be measured on
+constexpr double kUsualExponent = 1;   // bare earth: median 1.0-1.1 of sixteen lidar terrains
 constexpr double kLeastExponent = 0.1, kLargestExponent = 2;
-constexpr float kHighest = 1e5f;           // metres; no height on Earth, but a spike or an undeclared nodata value
+constexpr float kHighest = 1e5f;  // metres; no height on Earth, but a spike or an undeclared nodata value
 
 struct Residuals {
-  std::size_t places = 0, near_places = 0;    // with both q; with q = 1
+  std::size_t places = 0, near_places = 0;      // with both q; with q = 1
   double edge = 0, edge_far = 0, diagonal = 0;  // sums of squares at `places`
   double near_edge = 0, near_diagonal = 0;      // at `near_places`
   double highest = 0;                           // absolute height of those blocks
@@ -77,10 +77,12 @@ void drop_spikes(Grid<float>& block, Residuals& sums) {
   }
 }
 
-// Windows (core's row order) on a lattice anchored to the file's first row and column: the spread ones first, then the rest.
+// Windows (core's row order) on a lattice anchored to the file's first row and column: the spread ones first,
+// then the rest.
 class Blocks {
  public:
-  explicit Blocks(const DemSource& source) : rows_(source.rows()), cols_(source.cols()), flipped_(source.flipped()) {
+  explicit Blocks(const DemSource& source)
+      : rows_(source.rows()), cols_(source.cols()), flipped_(source.flipped()) {
     constexpr int kSide = kEstimateBlockSide;
     constexpr std::size_t kSmall = std::size_t{kEstimateBlocks} * kSide * kSide;
     if (source.window().cells() <= kSmall) {
@@ -96,14 +98,16 @@ class Blocks {
     for (int i = 0; i < take_down; ++i) {
       for (int j = 0; j < take_across; ++j) {
         const int r = middle(i, take_down, down), c = middle(j, take_across, across);
-        taken[static_cast<std::size_t>(r) * static_cast<std::size_t>(across) + static_cast<std::size_t>(c)] = 1;
+        taken[static_cast<std::size_t>(r) * static_cast<std::size_t>(across) + static_cast<std::size_t>(c)] =
+            1;
         windows_.push_back(tile(r, c));
       }
     }
     spread_ = windows_.size();
     for (int r = 0; r < down; ++r) {
       for (int c = 0; c < across; ++c) {
-        if (!taken[static_cast<std::size_t>(r) * static_cast<std::size_t>(across) + static_cast<std::size_t>(c)]) {
+        if (!taken[static_cast<std::size_t>(r) * static_cast<std::size_t>(across) +
+                   static_cast<std::size_t>(c)]) {
           windows_.push_back(tile(r, c));
         }
       }
@@ -132,8 +136,8 @@ class Blocks {
   std::size_t spread_ = 0;
 };
 
-// Rounded heights add the same to the residuals of every spacing and hide the growth of what is left. A residual holds the
-// sample's own rounding and half of the sum of two others'.
+// Rounded heights add the same to the residuals of every spacing and hide the growth of what is left. A
+// residual holds the sample's own rounding and half of the sum of two others'.
 double exponent_of(const Residuals& sums, double rounding_m) {
   constexpr double kRoundingShare = 1.5, kLeastLeft = 0.1;
   const double places = static_cast<double>(sums.places), rounding = kRoundingShare * rounding_m * rounding_m;
@@ -149,17 +153,20 @@ void judge_growth(const Residuals& sums, Estimate& out) {
   const double float_noise = std::numeric_limits<float>::epsilon() * sums.highest;
   if (std::sqrt(out.edge_ms) <= float_noise) {
     out.edge_ms = out.diagonal_ms = 0;
-    out.warnings.push_back("The DEM is flat or one plane as far as looked at: nothing can be learnt of what lies between its "
-                           "samples, and the error between them is taken as 0. If it is not flat in truth, give vertical_rmse "
-                           "and geologic_variation.");
+    out.warnings.push_back(
+        "The DEM is flat or one plane as far as looked at: nothing can be learnt of what lies between its "
+        "samples, and the error between them is taken as 0. If it is not flat in truth, give vertical_rmse "
+        "and geologic_variation.");
     return;
   }
   const double exponent = exponent_of(sums, out.rounding_m);
   out.growth_exponent = std::clamp(exponent, kLeastExponent, kLargestExponent);
   if (exponent > kOversampledExponent) {
-    out.warnings.push_back("The DEM is smoother than its cell size (growth exponent H = " + text(exponent) +
-                           "): it was probably resampled from a coarser one, or smoothed, and does not show the ground as finely as "
-                           "its cells suggest. The estimated error is too small; give vertical_rmse and geologic_variation.");
+    out.warnings.push_back(
+        "The DEM is smoother than its cell size (growth exponent H = " + text(exponent) +
+        "): it was probably resampled from a coarser one, or smoothed, and does not show the ground as "
+        "finely as "
+        "its cells suggest. The estimated error is too small; give vertical_rmse and geologic_variation.");
   }
 }
 
@@ -170,9 +177,11 @@ void judge_few(const Residuals& sums, Estimate& out) {
     out.edge_ms = sums.near_edge / places;
     out.diagonal_ms = sums.near_diagonal / places;
   }
-  out.warnings.push_back("The DEM has only " + std::to_string(sums.places) + " places to measure its error at (needed: " +
-                         std::to_string(kFewest) + "), because it is small or full of holes. The growth of the error is "
-                         "taken as usual for bare earth (H = 1) and its size from " + std::to_string(sums.near_places) +
+  out.warnings.push_back("The DEM has only " + std::to_string(sums.places) +
+                         " places to measure its error at (needed: " + std::to_string(kFewest) +
+                         "), because it is small or full of holes. The growth of the error is "
+                         "taken as usual for bare earth (H = 1) and its size from " +
+                         std::to_string(sums.near_places) +
                          " places; better give vertical_rmse and geologic_variation.");
 }
 

@@ -19,15 +19,16 @@ namespace {
 constexpr int kReach = Surroundings::kReach;
 
 struct Weights {
-  float diagonal;    // w
-  float whole;       // factor for sqrt(sum of all 27)
-  double growth;     // 2^-H
+  float diagonal;  // w
+  float whole;     // factor for sqrt(sum of all 27)
+  double growth;   // 2^-H
   float typical;
 };
 
 void residual_squares(const float* up, const float* z, const float* down, int n, float w, float* m) {
   for (int i = 1; i < n - 1; ++i) {
-    const float row = (z[i] - z[i - 1]) + (z[i] - z[i + 1]);  // differences first: exact for neighbouring heights
+    const float row =
+        (z[i] - z[i - 1]) + (z[i] - z[i + 1]);  // differences first: exact for neighbouring heights
     const float col = (z[i] - up[i]) + (z[i] - down[i]);
     const float diagonal = (z[i] - up[i - 1]) + (z[i] - down[i + 1]);
     m[i] = row * row + col * col + w * (diagonal * diagonal);
@@ -82,11 +83,11 @@ void repair(RowRing& heights, int row, const Weights& weights, int cols, float* 
 
 }  // namespace
 
-Grid<float> local_variation(const Surroundings& heights, double growth_exponent, double typical_m, const Workers& workers,
-                            Progress& progress) {
+Grid<float> local_variation(const Surroundings& heights, double growth_exponent, double typical_m,
+                            const Workers& workers, Progress& progress) {
   const double growth = std::exp2(-growth_exponent);
-  const Weights weights{static_cast<float>(growth), static_cast<float>(growth * 0.5 / std::sqrt(27.0)), growth,
-                        static_cast<float>(typical_m)};
+  const Weights weights{static_cast<float>(growth), static_cast<float>(growth * 0.5 / std::sqrt(27.0)),
+                        growth, static_cast<float>(typical_m)};
   const int cols = heights.cols(), padded = heights.padded_cols();
   Grid<float> out(heights.rows(), cols);
   for_each_band(heights.rows(), workers, progress, [&](int first, int end) {

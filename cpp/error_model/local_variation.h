@@ -9,16 +9,19 @@
 
 namespace sightbound {
 
-// Standard deviation half a spacing from a sample, metres, at each sample of the window. How far a sample lies from the
-// middle of its neighbours tells the error at twice the spacing; the rms over 3 x 3 samples, times 2^-H, is the answer:
+// Standard deviation half a spacing from a sample, metres, at each sample of the window. How far a sample
+// lies from the middle of its neighbours tells the error at twice the spacing; the rms over 3 x 3 samples,
+// times 2^-H, is the answer:
 //
 //   v = 2^-H sqrt(mean over 3 x 3 of (e_row^2 + e_col^2 + 2^-H e_diagonal^2) / 3)
-//   e = z - (z before + z after) / 2, along the row, the column and the NW-SE diagonal (there sqrt2 times as far: 2^-H)
+//   e = z - (z before + z after) / 2, along the row, the column and the NW-SE diagonal (there sqrt2 times as
+//   far: 2^-H)
 //
-// Residuals that nodata or the end of the DEM leaves out do not count; with none left, and on nodata itself, v is
-// `typical_m`. Finite and >= 0 everywhere. Depends on the 5 x 5 samples around alone, not on window or threads.
-// Cost: 10000 x 10000 in about 0.3 s on two cores; memory beyond the result: a few rows a thread. Only checks `progress`.
-Grid<float> local_variation(const Surroundings& heights, double growth_exponent, double typical_m, const Workers&,
-                            Progress&);
+// Residuals that nodata or the end of the DEM leaves out do not count; with none left, and on nodata itself,
+// v is `typical_m`. Finite and >= 0 everywhere. Depends on the 5 x 5 samples around alone, not on window or
+// threads. Cost: 10000 x 10000 in about 0.3 s on two cores; memory beyond the result: a few rows a thread.
+// Only checks `progress`.
+Grid<float> local_variation(const Surroundings& heights, double growth_exponent, double typical_m,
+                            const Workers&, Progress&);
 
 }  // namespace sightbound

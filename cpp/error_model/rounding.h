@@ -9,9 +9,9 @@
 
 namespace sightbound {
 
-// Takes blocks of heights in metres, then tells the step. A step is claimed only when every height looked at is a multiple
-// of it (to the precision of a float), neighbours differ by exactly one step somewhere, and the heights are no ideal
-// plane or terrace, for which integers are no rounding.
+// Takes blocks of heights in metres, then tells the step. A step is claimed only when every height looked at
+// is a multiple of it (to the precision of a float), neighbours differ by exactly one step somewhere, and the
+// heights are no ideal plane or terrace, for which integers are no rounding.
 class RoundingDetector {
  public:
   void add(const Grid<float>& block);
@@ -23,9 +23,9 @@ class RoundingDetector {
  private:
   bool fits(double step) const;
 
-  std::vector<float> heights_;  // every kRowStride-th row's
-  double least_difference_ = 0;  // between neighbours, of those above 0
-  double largest_height_ = 0;   // absolute
+  std::vector<float> heights_;         // every kRowStride-th row's
+  double least_difference_ = 0;        // between neighbours, of those above 0
+  double largest_height_ = 0;          // absolute
   std::size_t uneven_ = 0, bent_ = 0;  // triples in a row that are not all equal; of those, not on a line
 };
 

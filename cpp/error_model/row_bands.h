@@ -15,7 +15,8 @@ namespace sightbound {
 // The last `kept` rows of something, found by row number; each of `cols` floats.
 class RowRing {
  public:
-  RowRing(int kept, int cols) : kept_(kept), cols_(cols), data_(static_cast<std::size_t>(kept) * static_cast<std::size_t>(cols)) {}
+  RowRing(int kept, int cols)
+      : kept_(kept), cols_(cols), data_(static_cast<std::size_t>(kept) * static_cast<std::size_t>(cols)) {}
 
   float* row(int r) {
     const int slot = ((r % kept_) + kept_) % kept_;
@@ -27,7 +28,8 @@ class RowRing {
   std::vector<float> data_;
 };
 
-// Calls f(first row, row after the last) for bands that together cover the rows; checks for cancellation between them.
+// Calls f(first row, row after the last) for bands that together cover the rows; checks for cancellation
+// between them.
 template <class F>
 void for_each_band(int rows, const Workers& workers, Progress& progress, const F& f) {
   constexpr int kBandRows = 64;

@@ -22,8 +22,8 @@ namespace {
 constexpr int kReach = Surroundings::kReach;
 
 struct Row {
-  const float *up, *z, *down;      // padded rows of heights
-  float per_col_m, per_row_m;      // 1 / ground length of a step
+  const float *up, *z, *down;  // padded rows of heights
+  float per_col_m, per_row_m;  // 1 / ground length of a step
   float sigma_h;
 };
 
@@ -33,9 +33,12 @@ inline float larger(float x, float largest) { return x > largest ? x : largest; 
 void steepest(const Row& row, int cols, float* tan_times_sigma_h) {
   const float *up = row.up + kReach, *z = row.z + kReach, *down = row.down + kReach;
   for (int c = 0; c < cols; ++c) {
-    const float a = square((up[c] - up[c - 1]) * row.per_col_m), b = square((down[c + 1] - down[c]) * row.per_col_m);
-    const float m1 = square((z[c] - z[c - 1]) * row.per_col_m), m2 = square((z[c + 1] - z[c]) * row.per_col_m);
-    const float l = square((z[c - 1] - up[c - 1]) * row.per_row_m), r = square((down[c + 1] - z[c + 1]) * row.per_row_m);
+    const float a = square((up[c] - up[c - 1]) * row.per_col_m),
+                b = square((down[c + 1] - down[c]) * row.per_col_m);
+    const float m1 = square((z[c] - z[c - 1]) * row.per_col_m),
+                m2 = square((z[c + 1] - z[c]) * row.per_col_m);
+    const float l = square((z[c - 1] - up[c - 1]) * row.per_row_m),
+                r = square((down[c + 1] - z[c + 1]) * row.per_row_m);
     const float u = square((z[c] - up[c]) * row.per_row_m), d = square((down[c] - z[c]) * row.per_row_m);
     float largest = 0;
     largest = larger(a + u, largest);
@@ -63,8 +66,12 @@ SampleField sampling_error(SampleField sigma_v, double sigma_h, const Surroundin
     for (int r = first; r < end; ++r) {
       heights.copy_row(r + 1, z.row(r + 1));
       const CellSize& cell = cell_sizes[static_cast<std::size_t>(r)];
-      const Row row{z.row(r - 1), z.row(r), z.row(r + 1), static_cast<float>(1 / cell.col_m),
-                    static_cast<float>(1 / cell.row_m), static_cast<float>(sigma_h)};
+      const Row row{z.row(r - 1),
+                    z.row(r),
+                    z.row(r + 1),
+                    static_cast<float>(1 / cell.col_m),
+                    static_cast<float>(1 / cell.row_m),
+                    static_cast<float>(sigma_h)};
       float* koppe = slope.row(0);
       steepest(row, cols, koppe);
       float* to = out.row(r);

@@ -11,9 +11,10 @@
 
 namespace sightbound {
 
-// sigma_s = sigma_v + sigma_h tan(slope), metres; slope of the steepest whole triangle around the sample (0 where there is
-// none), with the ground cell size of the sample's own row. Constant when sigma_v is and sigma_h = 0; otherwise computed
-// in sigma_v's own grid, where it has one. Depends on the 3 x 3 samples around alone. Only checks `progress`.
+// sigma_s = sigma_v + sigma_h tan(slope), metres; slope of the steepest whole triangle around the sample (0
+// where there is none), with the ground cell size of the sample's own row. Constant when sigma_v is and
+// sigma_h = 0; otherwise computed in sigma_v's own grid, where it has one. Depends on the 3 x 3 samples
+// around alone. Only checks `progress`.
 SampleField sampling_error(SampleField sigma_v, double sigma_h, const Surroundings& heights,
                            std::span<const CellSize> cell_sizes, const Workers&, Progress&);
 

@@ -31,7 +31,8 @@ Surroundings::Surroundings(const Grid<float>& heights)
       left_(rows(), kReach, kNan),
       right_(rows(), kReach, kNan) {}
 
-Surroundings::Surroundings(const Grid<float>& heights, const Window& w, const DemSource& source, Progress& progress)
+Surroundings::Surroundings(const Grid<float>& heights, const Window& w, const DemSource& source,
+                           Progress& progress)
     : heights_(heights),
       above_(read_padded({w.col - kReach, w.row - kReach, padded_cols(), kReach}, source, progress)),
       below_(read_padded({w.col - kReach, w.row_end(), padded_cols(), kReach}, source, progress)),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Heights of a window with those around it, so that what is computed from neighbours does not depend on the window.
+// Heights of a window with those around it, so that what is computed from neighbours does not depend on the
+// window.
 #pragma once
 
 #include "base/progress.h"
@@ -8,7 +9,8 @@
 
 namespace sightbound {
 
-// Looks at the window's own heights (which must outlive it) and keeps the strips around them; no second copy of the window.
+// Looks at the window's own heights (which must outlive it) and keeps the strips around them; no second copy
+// of the window.
 class Surroundings {
  public:
   static constexpr int kReach = 2;  // rows and columns known on every side
@@ -22,8 +24,8 @@ class Surroundings {
   int cols() const { return heights_.cols(); }
   int padded_cols() const { return cols() + 2 * kReach; }
 
-  // `row` from -kReach to rows() + kReach - 1; writes padded_cols() heights, the window's first column at [kReach].
-  // NaN where the DEM has none or ends.
+  // `row` from -kReach to rows() + kReach - 1; writes padded_cols() heights, the window's first column at
+  // [kReach]. NaN where the DEM has none or ends.
   void copy_row(int row, float* to) const;
 
  private:

@@ -53,8 +53,8 @@ std::size_t planned_memory(const ErrorModel& model, const Window& window) {
 
 }  // namespace
 
-ErrorSurfaces run_error_surfaces(const DemSource& source, const ErrorModel& model, const ErrorSurfacesOptions& options,
-                                 Progress& progress) {
+ErrorSurfaces run_error_surfaces(const DemSource& source, const ErrorModel& model,
+                                 const ErrorSurfacesOptions& options, Progress& progress) {
   const double z_of_confidence = two_sided_quantile(options.confidence);
   model.validate();
   const Window window = window_of(options.extent, source);
@@ -65,7 +65,8 @@ ErrorSurfaces run_error_surfaces(const DemSource& source, const ErrorModel& mode
   ErrorSurfaces out;
   out.memory_bytes = planned_memory(model, window);
   MemoryBudget(options.memory_budget)
-      .require(out.memory_bytes, "The error of " + std::to_string(window.cols) + " x " + std::to_string(window.rows) + " cells",
+      .require(out.memory_bytes,
+               "The error of " + std::to_string(window.cols) + " x " + std::to_string(window.rows) + " cells",
                "Give a smaller extent, or a larger memory budget.");
 
   progress.begin(0.1, 1);

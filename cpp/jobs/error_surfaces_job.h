@@ -21,13 +21,13 @@ struct ErrorSurfacesOptions {
   std::size_t memory_budget = 0;  // bytes; 0 = three quarters of the machine's memory
 };
 
-// In the user's row order. sigma: the largest within half a cell of the sample (sigma_s + sigma_g at the cell's corner);
-// lower, upper = height -+ z(confidence) sigma, rounded outward. NaN where the DEM has none.
+// In the user's row order. sigma: the largest within half a cell of the sample (sigma_s + sigma_g at the
+// cell's corner); lower, upper = height -+ z(confidence) sigma, rounded outward. NaN where the DEM has none.
 struct ErrorSurfaces {
   Grid<float> sigma, lower, upper;
   Geotransform geotransform;
   std::string crs_wkt;
-  std::string error_model;  // JSON of what was used; arrays are named as such
+  std::string error_model;       // JSON of what was used; arrays are named as such
   std::size_t memory_bytes = 0;  // planned peak
   std::vector<std::string> warnings;
 };

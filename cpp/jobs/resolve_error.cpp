@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Method. Neighbours are looked at (slope, local map) while `heights` is still what the source gave; only then are cells
-// without an error value made holes. So a window's values do not depend on where the window ends.
+// Method. Neighbours are looked at (slope, local map) while `heights` is still what the source gave; only
+// then are cells without an error value made holes. So a window's values do not depend on where the window
+// ends.
 #include "jobs/resolve_error.h"
 
 #include <algorithm>
@@ -36,7 +37,9 @@ bool is_grid(const Quantity& quantity) {
 }
 
 // What is left to the DEM becomes one number for sigma_v, a map for Delta.
-bool has_sampling_grid(const ErrorModel& model) { return model.horizontal_rmse > 0 || is_grid(model.vertical_rmse); }
+bool has_sampling_grid(const ErrorModel& model) {
+  return model.horizontal_rmse > 0 || is_grid(model.vertical_rmse);
+}
 
 bool has_geologic_grid(const ErrorModel& model) {
   return model.terrain_types.has_value() || !std::holds_alternative<double>(model.geologic_variation);
@@ -58,8 +61,9 @@ void require_allowed(const Grid<float>& values, const char* field, const std::st
 Grid<float> part_of(const SharedGrid& array, const char* field, const Job& job) {
   if (array->rows() != job.source.rows() || array->cols() != job.source.cols()) {
     throw InvalidInput(std::string(field) + " is an array of " + std::to_string(array->rows()) + " x " +
-                       std::to_string(array->cols()) + " values, but the DEM has " + std::to_string(job.source.rows()) +
-                       " x " + std::to_string(job.source.cols()) + " samples; give one value per sample.");
+                       std::to_string(array->cols()) + " values, but the DEM has " +
+                       std::to_string(job.source.rows()) + " x " + std::to_string(job.source.cols()) +
+                       " samples; give one value per sample.");
   }
   Grid<float> out(job.window.rows, job.window.cols);
   for (int r = 0; r < out.rows(); ++r) {
@@ -95,10 +99,11 @@ void scale(Grid<float>& values, double factor, const Job& job) {
 
 SampleField base_amplitude(const Job& job, const Surroundings* heights) {
   const Quantity& variation = job.model.geologic_variation;
-  if (const auto* metres = std::get_if<double>(&variation)) return SampleField(static_cast<float>(*metres / kZ95));
+  if (const auto* metres = std::get_if<double>(&variation))
+    return SampleField(static_cast<float>(*metres / kZ95));
   if (std::holds_alternative<FromDem>(variation)) {
-    return SampleField(
-        local_variation(*heights, *job.model.growth_exponent, *job.model.typical_m, job.workers, job.progress));
+    return SampleField(local_variation(*heights, *job.model.growth_exponent, *job.model.typical_m,
+                                       job.workers, job.progress));
   }
   Grid<float> delta = grid_of(variation, "geologic_variation", job);
   scale(delta, 1 / kZ95, job);
@@ -107,7 +112,8 @@ SampleField base_amplitude(const Job& job, const Surroundings* heights) {
 
 // Inside polygons their own amplitude, outside the base's.
 SampleField with_terrain_types(SampleField base, const Job& job) {
-  Grid<float> amplitude = terrain_type_variation(*job.model.terrain_types, job.source, job.window, job.progress);
+  Grid<float> amplitude =
+      terrain_type_variation(*job.model.terrain_types, job.source, job.window, job.progress);
   require_allowed(amplitude, "terrain_types", job.model.terrain_types->path);
   scale(amplitude, 1 / kZ95, job);
   job.workers.for_each(index(amplitude.rows()), [&](std::size_t at) {
@@ -120,8 +126,8 @@ SampleField with_terrain_types(SampleField base, const Job& job) {
   return SampleField(std::move(amplitude));
 }
 
-// Where `field` has no value the height becomes a hole. The value there, which then nobody judges by, becomes the least of
-// all, so that it widens no bound. Returns the number of heights lost.
+// Where `field` has no value the height becomes a hole. The value there, which then nobody judges by, becomes
+// the least of all, so that it widens no bound. Returns the number of heights lost.
 std::size_t make_holes(SampleField& field, Grid<float>& heights) {
   Grid<float> values = field.release();
   float least = std::numeric_limits<float>::infinity();
@@ -141,10 +147,12 @@ std::size_t make_holes(SampleField& field, Grid<float>& heights) {
   return lost;
 }
 
-void warn_of_holes(std::size_t lost, const char* field, const Window& window, std::vector<std::string>& warnings) {
+void warn_of_holes(std::size_t lost, const char* field, const Window& window,
+                   std::vector<std::string>& warnings) {
   if (lost == 0) return;
   warnings.push_back(std::string(field) + " has no value at " + std::to_string(lost) + " of " +
-                     std::to_string(window.cells()) + " cells where the DEM has a height; the ground there counts as unknown.");
+                     std::to_string(window.cells()) +
+                     " cells where the DEM has a height; the ground there counts as unknown.");
 }
 
 GrowthProfile profile_of(const ErrorModel& model, double larger_side_m) {
@@ -164,15 +172,16 @@ void add_geometry(ErrorField& field, const Job& job, const Georeference& georefe
   for (std::size_t r = index(above); r < sizes.size(); ++r) {
     const CellSize &cell = sizes[r], &before = sizes[r > 0 ? r - 1 : 0];
     field.cell_sizes.push_back(cell);
-    field.farthest.push_back(0.5 * std::max(std::hypot(cell.col_m, cell.row_m), std::hypot(before.col_m, before.row_m)));
+    field.farthest.push_back(
+        0.5 * std::max(std::hypot(cell.col_m, cell.row_m), std::hypot(before.col_m, before.row_m)));
   }
   field.larger_side_m = larger_cell_side(georeference, job.source.rows(), job.source.cols());
 }
 
 }  // namespace
 
-ErrorModel complete_model(const ErrorModel& model, const DemSource& source, std::vector<std::string>& warnings,
-                          Progress& progress) {
+ErrorModel complete_model(const ErrorModel& model, const DemSource& source,
+                          std::vector<std::string>& warnings, Progress& progress) {
   model.validate();
   if (!model.needs_estimate()) return model;
   const Estimate learnt = estimate(source, progress);
@@ -180,11 +189,12 @@ ErrorModel complete_model(const ErrorModel& model, const DemSource& source, std:
   return with_estimate(model, learnt);
 }
 
-ErrorField resolve_error(const ErrorModel& completed, const DemSource& source, const Georeference& georeference,
-                         const Window& window, Grid<float>& heights, std::vector<std::string>& warnings,
-                         const Workers& workers, Progress& progress) {
+ErrorField resolve_error(const ErrorModel& completed, const DemSource& source,
+                         const Georeference& georeference, const Window& window, Grid<float>& heights,
+                         std::vector<std::string>& warnings, const Workers& workers, Progress& progress) {
   completed.validate();
-  if (completed.needs_estimate()) throw InvalidInput("The error model is not complete; pass it through complete_model first.");
+  if (completed.needs_estimate())
+    throw InvalidInput("The error model is not complete; pass it through complete_model first.");
   const Job job{completed, source, window, workers, progress};
   ErrorField field;
   add_geometry(field, job, georeference);
@@ -193,9 +203,10 @@ ErrorField resolve_error(const ErrorModel& completed, const DemSource& source, c
   SampleField sigma_v = given_sigma_v(job);
   std::optional<Surroundings> around;
   if (needs_neighbours(completed)) around.emplace(heights, window, source, progress);
-  field.sampling = completed.horizontal_rmse > 0 ? sampling_error(std::move(sigma_v), completed.horizontal_rmse, *around,
-                                                                  field.cell_sizes, workers, progress)
-                                                 : std::move(sigma_v);
+  field.sampling = completed.horizontal_rmse > 0
+                       ? sampling_error(std::move(sigma_v), completed.horizontal_rmse, *around,
+                                        field.cell_sizes, workers, progress)
+                       : std::move(sigma_v);
   field.amplitude = base_amplitude(job, around ? &*around : nullptr);
   if (completed.terrain_types) field.amplitude = with_terrain_types(std::move(field.amplitude), job);
 
@@ -212,7 +223,8 @@ ResolveMemory resolve_error_memory(const ErrorModel& model, const Window& window
   const std::size_t grid = window.cells() * sizeof(float);
   ResolveMemory memory;
   memory.kept = (has_sampling_grid(model) ? grid : 0) + (has_geologic_grid(model) ? grid : 0);
-  const bool base_and_types = model.terrain_types && !std::holds_alternative<double>(model.geologic_variation);
+  const bool base_and_types =
+      model.terrain_types && !std::holds_alternative<double>(model.geologic_variation);
   memory.peak = memory.kept + (base_and_types ? grid : 0);
   return memory;
 }

@@ -47,10 +47,12 @@ Extent extent_of(const DemSource& source) {
 
 Window snap_extent(const Extent& extent, const DemSource& source) {
   for (const double value : {extent.x_min, extent.y_min, extent.x_max, extent.y_max}) {
-    if (!std::isfinite(value)) throw InvalidInput("extent (" + text(extent) + ") has a coordinate that is not a number.");
+    if (!std::isfinite(value))
+      throw InvalidInput("extent (" + text(extent) + ") has a coordinate that is not a number.");
   }
   if (!(extent.x_min < extent.x_max && extent.y_min < extent.y_max)) {
-    throw InvalidInput("extent (" + text(extent) + ") is empty; give (xmin, ymin, xmax, ymax) with xmin < xmax, ymin < ymax.");
+    throw InvalidInput("extent (" + text(extent) +
+                       ") is empty; give (xmin, ymin, xmax, ymax) with xmin < xmax, ymin < ymax.");
   }
   Bounds col, row;  // of cell borders: 0 is the outer border of the first cell
   for (const double x : {extent.x_min, extent.x_max}) {
@@ -60,8 +62,12 @@ Window snap_extent(const Extent& extent, const DemSource& source) {
       row.add(place.y + 0.5);
     }
   }
-  const auto begin = [](const Bounds& b, int cells) { return static_cast<int>(std::clamp(std::floor(b.least + kSnap), 0.0, double(cells))); };
-  const auto end = [](const Bounds& b, int cells) { return static_cast<int>(std::clamp(std::ceil(b.largest - kSnap), 0.0, double(cells))); };
+  const auto begin = [](const Bounds& b, int cells) {
+    return static_cast<int>(std::clamp(std::floor(b.least + kSnap), 0.0, double(cells)));
+  };
+  const auto end = [](const Bounds& b, int cells) {
+    return static_cast<int>(std::clamp(std::ceil(b.largest - kSnap), 0.0, double(cells)));
+  };
   Window window;
   window.col = begin(col, source.cols());
   window.row = begin(row, source.rows());

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/memory_budget.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/memory_budget.h"
 
 namespace sightbound {
 namespace {
@@ -26,7 +25,9 @@ TEST(MemoryBudget, SaysWhatIsNeededAndWhatToDo) {
     MemoryBudget(10 * kMebi).require(3072 * kMebi, "The viewshed", "Give a shorter max_distance.");
     FAIL();
   } catch (const OverBudget& error) {
-    EXPECT_STREQ(error.what(), "The viewshed needs 3.00 GiB of memory, more than the budget of 10.0 MiB. Give a shorter max_distance.");
+    EXPECT_STREQ(error.what(),
+                 "The viewshed needs 3.00 GiB of memory, more than the budget of 10.0 MiB. Give a shorter "
+                 "max_distance.");
   }
 }
 

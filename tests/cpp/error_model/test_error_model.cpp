@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "error_model/error_model.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include <gtest/gtest.h>
+
 #include "base/error.h"
+#include "error_model/error_model.h"
 #include "support/says.h"
 
 namespace sightbound {
@@ -62,17 +61,22 @@ TEST(ErrorModel, EitherPartMayBeLeftToTheDem) {
 }
 
 TEST(ErrorModel, NumbersOutOfRangeNameFieldValueAndRange) {
-  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.vertical_rmse = -1.0; }), "vertical_rmse is -1; allowed are 0 to 10000 m"));
+  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.vertical_rmse = -1.0; }),
+                   "vertical_rmse is -1; allowed are 0 to 10000 m"));
   EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.vertical_rmse = 10000.5; }), "vertical_rmse is 10000.5"));
   EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.vertical_rmse = std::nan(""); }), "vertical_rmse is nan"));
-  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.horizontal_rmse = std::numeric_limits<double>::infinity(); }), "horizontal_rmse is inf"));
-  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.geologic_variation = 1e9; }), "geologic_variation is 1000000000"));
+  EXPECT_TRUE(
+      says(complaint([](ErrorModel& m) { m.horizontal_rmse = std::numeric_limits<double>::infinity(); }),
+           "horizontal_rmse is inf"));
+  EXPECT_TRUE(
+      says(complaint([](ErrorModel& m) { m.geologic_variation = 1e9; }), "geologic_variation is 1000000000"));
   EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.geologic_range = 0; }), "geologic_range is 0"));
   EXPECT_EQ(complaint([](ErrorModel& m) { m.vertical_rmse = 10000.0; }), "");
 }
 
 TEST(ErrorModel, StepNeedsARange) {
-  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.geologic_shape = GeologicShape::kStep; }), "geologic_range"));
+  EXPECT_TRUE(
+      says(complaint([](ErrorModel& m) { m.geologic_shape = GeologicShape::kStep; }), "geologic_range"));
   EXPECT_EQ(complaint([](ErrorModel& m) {
               m.geologic_shape = GeologicShape::kStep;
               m.geologic_range = 5;
@@ -81,41 +85,56 @@ TEST(ErrorModel, StepNeedsARange) {
 }
 
 TEST(ErrorModel, GrowthNeedsAnExponentAndNoRange) {
-  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.geologic_shape = GeologicShape::kGrowth; }), "growth_exponent"));
+  EXPECT_TRUE(
+      says(complaint([](ErrorModel& m) { m.geologic_shape = GeologicShape::kGrowth; }), "growth_exponent"));
   const auto growth = [](ErrorModel& m) {
     m.geologic_shape = GeologicShape::kGrowth;
     m.growth_exponent = 1.2;
   };
   EXPECT_EQ(complaint(growth), "");
   EXPECT_TRUE(says(complaint([&](ErrorModel& m) {
-                growth(m);
-                m.geologic_range = 3;
-              }), "geologic_range"));
+                     growth(m);
+                     m.geologic_range = 3;
+                   }),
+                   "geologic_range"));
   EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.growth_exponent = 1.2; }), "choose 'growth'"));
   EXPECT_TRUE(says(complaint([&](ErrorModel& m) {
-                growth(m);
-                m.growth_exponent = 3;
-              }), "0.1 to 2"));
+                     growth(m);
+                     m.growth_exponent = 3;
+                   }),
+                   "0.1 to 2"));
 }
 
 TEST(ErrorModel, AnEstimateTakesNeitherRangeNorStep) {
   EXPECT_TRUE(says(complaint([](ErrorModel& m) {
-                m.geologic_variation = FromDem{};
-                m.geologic_range = 20;
-              }), "Give geologic_variation too"));
+                     m.geologic_variation = FromDem{};
+                     m.geologic_range = 20;
+                   }),
+                   "Give geologic_variation too"));
   EXPECT_TRUE(says(complaint([](ErrorModel& m) {
-                m.geologic_variation = FromDem{};
-                m.geologic_shape = GeologicShape::kStep;
-              }), "Give geologic_variation"));
+                     m.geologic_variation = FromDem{};
+                     m.geologic_shape = GeologicShape::kStep;
+                   }),
+                   "Give geologic_variation"));
 }
 
 TEST(ErrorModel, RastersArraysAndPolygonsAreChecked) {
   EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.vertical_rmse = RasterFile{}; }), "without a path"));
-  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.vertical_rmse = RasterFile{"a.tif", 0}; }), "bands count from 1"));
+  EXPECT_TRUE(says(complaint([](ErrorModel& m) {
+                     m.vertical_rmse = RasterFile{"a.tif", 0};
+                   }),
+                   "bands count from 1"));
   EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.geologic_variation = SharedGrid{}; }), "empty array"));
-  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.terrain_types = TerrainTypes{}; }), "terrain_types has no path"));
-  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.terrain_types = TerrainTypes{"a.gpkg", "", "", {}}; }), "terrain_field is missing"));
-  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.terrain_types = TerrainTypes{"a.gpkg", "", "kind", {{"mud", -1}}}; }), "terrain_table['mud'] is -1"));
+  EXPECT_TRUE(
+      says(complaint([](ErrorModel& m) { m.terrain_types = TerrainTypes{}; }), "terrain_types has no path"));
+  EXPECT_TRUE(says(complaint([](ErrorModel& m) {
+                     m.terrain_types = TerrainTypes{"a.gpkg", "", "", {}};
+                   }),
+                   "terrain_field is missing"));
+  EXPECT_TRUE(says(complaint([](ErrorModel& m) {
+                     m.terrain_types = TerrainTypes{"a.gpkg", "", "kind", {{"mud", -1}}};
+                   }),
+                   "terrain_table['mud'] is -1"));
 }
 
 TEST(ErrorModel, ShapesHaveNames) {

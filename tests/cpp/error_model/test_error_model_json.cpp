@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "support/says.h"
 #include "error_model/error_model.h"
+#include "support/says.h"
 
 namespace sightbound {
 namespace {

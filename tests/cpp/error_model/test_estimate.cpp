@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "error_model/estimate.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <vector>
 
+#include <gtest/gtest.h>
+
+#include "error_model/estimate.h"
 #include "error_model/local_variation.h"
 #include "support/says.h"
 #include "support/terrains.h"
@@ -13,12 +12,12 @@
 namespace sightbound {
 namespace {
 
-using testing::says;
 using testing::dem_of;
 using testing::grid_from;
 using testing::hills;
 using testing::kNan;
 using testing::noise;
+using testing::says;
 
 Estimate learnt(Grid<float> heights, const std::array<double, 6>& geotransform = testing::kNorthUp) {
   Progress progress;
@@ -57,7 +56,8 @@ TEST(Estimate, OfAParaboloidGrowsQuadraticallyAndWarns) {
 
 TEST(Estimate, OfAFlatDemOrAPlaneIsZero) {
   for (const double slope : {0.0, 0.37}) {
-    const Estimate found = learnt(grid_from(90, 90, [=](int r, int c) { return 1234.5 + slope * c - 2 * slope * r; }));
+    const Estimate found =
+        learnt(grid_from(90, 90, [=](int r, int c) { return 1234.5 + slope * c - 2 * slope * r; }));
     EXPECT_EQ(found.growth_exponent, 1);
     EXPECT_EQ(found.typical_m, 0);
     EXPECT_EQ(found.rounding_m, 0);
@@ -70,7 +70,8 @@ TEST(Estimate, TypicalIsTheRmsOfTheLocalMap) {
   const Grid<float> z = grid_from(400, 400, [](int r, int c) { return hills(r, c, 0.9, 8); });
   const Estimate found = learnt(testing::copy_of(z));
   Progress progress;
-  const Grid<float> map = local_variation(Surroundings(z), found.growth_exponent, found.typical_m, Workers(1), progress);
+  const Grid<float> map =
+      local_variation(Surroundings(z), found.growth_exponent, found.typical_m, Workers(1), progress);
   double sum = 0;
   for (const float v : map.values()) sum += double(v) * v;
   EXPECT_NEAR(std::sqrt(sum / double(map.size())) / found.typical_m, 1, 0.01);
@@ -79,7 +80,8 @@ TEST(Estimate, TypicalIsTheRmsOfTheLocalMap) {
 TEST(Estimate, RoundingDoesNotHideTheGrowth) {
   const auto terrain = [](int r, int c) { return 3 * hills(r, c, 1.2, 8); };
   const Estimate exact = learnt(grid_from(400, 400, terrain));
-  const Estimate rounded = learnt(grid_from(400, 400, [&](int r, int c) { return std::round(terrain(r, c)); }));
+  const Estimate rounded =
+      learnt(grid_from(400, 400, [&](int r, int c) { return std::round(terrain(r, c)); }));
   EXPECT_EQ(exact.rounding_m, 0);
   EXPECT_NEAR(rounded.rounding_m, 0.2887, 1e-4);
   EXPECT_NEAR(rounded.growth_exponent, exact.growth_exponent, 0.1);
@@ -129,7 +131,8 @@ class Watched final : public DemSource {
 TEST(Estimate, ReadsSpreadBlocksOnTheFilesTiles) {
   constexpr int kRows = 2900, kCols = 2500;
   for (const auto& geotransform : {testing::kNorthUp, testing::kSouthUp}) {
-    const auto dem = dem_of(grid_from(kRows, kCols, [](int r, int c) { return noise(r / 2, c / 2, 3); }), geotransform);
+    const auto dem =
+        dem_of(grid_from(kRows, kCols, [](int r, int c) { return noise(r / 2, c / 2, 3); }), geotransform);
     const Watched watched(*dem, geotransform);
     Progress progress;
     estimate(watched, progress);
@@ -148,7 +151,8 @@ TEST(Estimate, ReadsSpreadBlocksOnTheFilesTiles) {
 }
 
 TEST(Estimate, LooksFurtherWhenMostHeightsAreMissing) {
-  const auto dem = dem_of(grid_from(2600, 2600, [](int r, int c) { return r < 100 && c < 100 ? noise(r, c, 3) : double(kNan); }));
+  const auto dem = dem_of(
+      grid_from(2600, 2600, [](int r, int c) { return r < 100 && c < 100 ? noise(r, c, 3) : double(kNan); }));
   Progress progress;
   const Estimate found = estimate(*dem, progress);
   EXPECT_TRUE(found.warnings.empty());

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "error_model/local_variation.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstring>
 
+#include <gtest/gtest.h>
+
 #include "base/error.h"
+#include "error_model/local_variation.h"
 #include "support/terrains.h"
 
 namespace sightbound {
@@ -28,13 +27,16 @@ Grid<float> map_of(const Grid<float>& heights, double exponent = 1, double typic
 
 // The definition in the header, written down once more.
 double by_definition(const Grid<float>& z, int row, int col, double exponent, double typical) {
-  const auto at = [&](int r, int c) { return r < 0 || c < 0 || r >= z.rows() || c >= z.cols() ? std::nan("") : double(z.at(r, c)); };
+  const auto at = [&](int r, int c) {
+    return r < 0 || c < 0 || r >= z.rows() || c >= z.cols() ? std::nan("") : double(z.at(r, c));
+  };
   if (std::isnan(at(row, col))) return typical;
   double sum = 0;
   int count = 0;
   for (int r = row - 1; r <= row + 1; ++r) {
     for (int c = col - 1; c <= col + 1; ++c) {
-      const double e[] = {at(r, c) - (at(r, c - 1) + at(r, c + 1)) / 2, at(r, c) - (at(r - 1, c) + at(r + 1, c)) / 2,
+      const double e[] = {at(r, c) - (at(r, c - 1) + at(r, c + 1)) / 2,
+                          at(r, c) - (at(r - 1, c) + at(r + 1, c)) / 2,
                           at(r, c) - (at(r - 1, c - 1) + at(r + 1, c + 1)) / 2};
       for (int i = 0; i < 3; ++i) {
         if (std::isnan(e[i])) continue;
@@ -62,7 +64,9 @@ TEST(LocalVariation, IsItsDefinition) {
 }
 
 TEST(LocalVariation, IsItsDefinitionAroundHolesAndOnSmallDems) {
-  expect_by_definition(grid_from(80, 40, [](int r, int c) { return noise(r, c, 7) < 0.1 ? double(kNan) : hills(r, c, 1, 2); }), 1.1);
+  expect_by_definition(
+      grid_from(80, 40, [](int r, int c) { return noise(r, c, 7) < 0.1 ? double(kNan) : hills(r, c, 1, 2); }),
+      1.1);
   expect_by_definition(grid_of({{1, 2}, {3, 9}}), 1);
   expect_by_definition(grid_of({{1, 2, 0}, {3, kNan, 4}}), 1);
   expect_by_definition(grid_of({{1, 2, 0, 5, 3, 8}, {3, 9, 1, 1, 4, 2}}), 1);
@@ -91,24 +95,28 @@ TEST(LocalVariation, OnNodataAndWhereNothingIsKnownIsTypical) {
 }
 
 TEST(LocalVariation, DoesNotDependOnThreads) {
-  const Grid<float> z = grid_from(300, 77, [](int r, int c) { return noise(r, c, 9) < 0.01 ? double(kNan) : hills(r, c, 1, 4); });
+  const Grid<float> z = grid_from(
+      300, 77, [](int r, int c) { return noise(r, c, 9) < 0.01 ? double(kNan) : hills(r, c, 1, 4); });
   const Grid<float> one = map_of(z, 0.9, 1, 1), many = map_of(z, 0.9, 1, 7);
   EXPECT_EQ(std::memcmp(one.data(), many.data(), one.size() * sizeof(float)), 0);
 }
 
 TEST(LocalVariation, DoesNotDependOnTheWindow) {
-  const auto whole = grid_from(200, 90, [](int r, int c) { return noise(r, c, 9) < 0.02 ? double(kNan) : hills(r, c, 1, 4); });
+  const auto whole = grid_from(
+      200, 90, [](int r, int c) { return noise(r, c, 9) < 0.02 ? double(kNan) : hills(r, c, 1, 4); });
   for (const auto& geotransform : {testing::kNorthUp, testing::kSouthUp}) {
     const auto dem = dem_of(copy_of(whole), geotransform);
     Progress progress;
     const Grid<float> all = dem->read(dem->window(), progress);
     const Grid<float> map = local_variation(Surroundings(all), 0.9, 1, Workers(2), progress);
-    for (const Window& w : {Window{0, 0, 90, 200}, Window{3, 5, 40, 100}, Window{1, 1, 88, 198}, Window{60, 150, 30, 50},
-                            Window{17, 64, 1, 1}, Window{0, 70, 2, 130}}) {
+    for (const Window& w : {Window{0, 0, 90, 200}, Window{3, 5, 40, 100}, Window{1, 1, 88, 198},
+                            Window{60, 150, 30, 50}, Window{17, 64, 1, 1}, Window{0, 70, 2, 130}}) {
       const Grid<float> heights = dem->read(w, progress);
-      const Grid<float> part = local_variation(Surroundings(heights, w, *dem, progress), 0.9, 1, Workers(2), progress);
+      const Grid<float> part =
+          local_variation(Surroundings(heights, w, *dem, progress), 0.9, 1, Workers(2), progress);
       const Grid<float> expected = part_of(map, w);
-      EXPECT_EQ(std::memcmp(part.data(), expected.data(), part.size() * sizeof(float)), 0) << w.col << " " << w.row;
+      EXPECT_EQ(std::memcmp(part.data(), expected.data(), part.size() * sizeof(float)), 0)
+          << w.col << " " << w.row;
     }
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "error_model/error_model.h"
@@ -31,7 +31,8 @@ TEST(Normal, QuantileInvertsTheDistributionEverywhere) {
 }
 
 TEST(Normal, QuantileRefusesWhatIsNoConfidence) {
-  for (const double c : {0.0, 1.0, -0.5, 95.0, std::nan("")}) EXPECT_THROW(two_sided_quantile(c), InvalidInput) << c;
+  for (const double c : {0.0, 1.0, -0.5, 95.0, std::nan("")})
+    EXPECT_THROW(two_sided_quantile(c), InvalidInput) << c;
 }
 
 TEST(Normal, CdfHoldsInTheTails) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "error_model/rounding.h"
+#include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
+#include "error_model/rounding.h"
 #include "support/terrains.h"
 
 namespace sightbound {
@@ -23,7 +22,8 @@ double step_of(const Grid<float>& block) {
 
 // Hills rounded to `step`, `base` metres up; as a file of such units holds them.
 Grid<float> rounded_hills(double step, double base = 0) {
-  return grid_from(64, 64, [=](int r, int c) { return step * std::round((base + hills(r, c, 1, 3)) / step); });
+  return grid_from(64, 64,
+                   [=](int r, int c) { return step * std::round((base + hills(r, c, 1, 3)) / step); });
 }
 
 TEST(Rounding, StepsInUseAreFound) {
@@ -37,9 +37,13 @@ TEST(Rounding, StepsInUseAreFound) {
 
 TEST(Rounding, FeetScaledAsFloatsAreFeet) {
   const auto foot = static_cast<float>(0.3048), us_foot = static_cast<float>(1200.0 / 3937.0);
-  EXPECT_NEAR(step_of(grid_from(64, 64, [=](int r, int c) { return std::round(float(3000 + hills(r, c, 1, 3))) * foot; })), 0.3048, 1e-9);
-  EXPECT_NEAR(step_of(grid_from(64, 64, [=](int r, int c) { return std::round(float(3000 + hills(r, c, 1, 3))) * us_foot; })),
-              1200.0 / 3937.0, 1e-9);
+  EXPECT_NEAR(step_of(grid_from(
+                  64, 64, [=](int r, int c) { return std::round(float(3000 + hills(r, c, 1, 3))) * foot; })),
+              0.3048, 1e-9);
+  EXPECT_NEAR(
+      step_of(grid_from(64, 64,
+                        [=](int r, int c) { return std::round(float(3000 + hills(r, c, 1, 3))) * us_foot; })),
+      1200.0 / 3937.0, 1e-9);
 }
 
 TEST(Rounding, UnroundedHeightsAreNotRounded) {
@@ -55,8 +59,8 @@ TEST(Rounding, OneUnroundedHeightIsEnough) {
 
 TEST(Rounding, IdealShapesWithWholeMetresAreNotRounded) {
   EXPECT_EQ(step_of(Grid<float>(64, 64, 100.0f)), 0);
-  EXPECT_EQ(step_of(grid_from(64, 64, [](int r, int c) { return c + 2 * r; })), 0);          // plane
-  EXPECT_EQ(step_of(grid_from(64, 64, [](int, int c) { return c < 32 ? 0 : 10; })), 0);       // step
+  EXPECT_EQ(step_of(grid_from(64, 64, [](int r, int c) { return c + 2 * r; })), 0);            // plane
+  EXPECT_EQ(step_of(grid_from(64, 64, [](int, int c) { return c < 32 ? 0 : 10; })), 0);        // step
   EXPECT_EQ(step_of(grid_from(64, 64, [](int, int c) { return 50 - std::abs(c - 31); })), 0);  // ridge
 }
 

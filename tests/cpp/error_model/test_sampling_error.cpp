@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "error_model/sampling_error.h"
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include <gtest/gtest.h>
+
+#include "error_model/sampling_error.h"
 #include "support/terrains.h"
 
 namespace sightbound {
@@ -23,9 +22,11 @@ std::vector<CellSize> cells(int rows, double col_m, double row_m) {
   return std::vector<CellSize>(static_cast<std::size_t>(rows), CellSize{col_m, row_m});
 }
 
-SampleField koppe(const Grid<float>& heights, double sigma_v, double sigma_h, const std::vector<CellSize>& sizes) {
+SampleField koppe(const Grid<float>& heights, double sigma_v, double sigma_h,
+                  const std::vector<CellSize>& sizes) {
   Progress progress;
-  return sampling_error(SampleField(static_cast<float>(sigma_v)), sigma_h, Surroundings(heights), sizes, Workers(1), progress);
+  return sampling_error(SampleField(static_cast<float>(sigma_v)), sigma_h, Surroundings(heights), sizes,
+                        Workers(1), progress);
 }
 
 // tan(slope) of the plane through three samples by its normal; shares no formula with the code.
@@ -46,10 +47,12 @@ double steepest_around(const Grid<float>& z, const CellSize& cell, int r, int c)
   double largest = 0;
   for (int i = r - 1; i <= r; ++i) {
     for (int j = c - 1; j <= c; ++j) {
-      const int upper[3][2] = {{i, j}, {i, j + 1}, {i + 1, j + 1}}, lower[3][2] = {{i, j}, {i + 1, j}, {i + 1, j + 1}};
+      const int upper[3][2] = {{i, j}, {i, j + 1}, {i + 1, j + 1}},
+                lower[3][2] = {{i, j}, {i + 1, j}, {i + 1, j + 1}};
       for (const auto& triangle : {std::cref(upper), std::cref(lower)}) {
         const auto& t = triangle.get();
-        const bool touches = std::any_of(std::begin(t), std::end(t), [&](const int(&p)[2]) { return p[0] == r && p[1] == c; });
+        const bool touches =
+            std::any_of(std::begin(t), std::end(t), [&](const int(&p)[2]) { return p[0] == r && p[1] == c; });
         const double slope = touches ? tan_slope(z, cell, t) : 0;
         if (slope > largest) largest = slope;
       }
@@ -61,7 +64,8 @@ double steepest_around(const Grid<float>& z, const CellSize& cell, int r, int c)
 TEST(SamplingError, OnAPlaneIsKoppesFormula) {
   const Grid<float> plane = grid_from(6, 7, [](int r, int c) { return 100 + 3.0 * c + 4.0 * r; });
   const SampleField field = koppe(plane, 1, 2, cells(6, 10, 10));
-  for (const float sigma : field.values().values()) EXPECT_FLOAT_EQ(sigma, 1 + 2 * 0.5f);  // tan = hypot(0.3, 0.4)
+  for (const float sigma : field.values().values())
+    EXPECT_FLOAT_EQ(sigma, 1 + 2 * 0.5f);  // tan = hypot(0.3, 0.4)
 }
 
 TEST(SamplingError, TakesTheSteepestOfSixTriangles) {
@@ -69,7 +73,8 @@ TEST(SamplingError, TakesTheSteepestOfSixTriangles) {
   const SampleField field = koppe(rough, 0.25, 1.5, cells(9, 7, 11));
   for (int r = 0; r < 9; ++r) {
     for (int c = 0; c < 8; ++c) {
-      EXPECT_NEAR(field.at(r, c), 0.25 + 1.5 * steepest_around(rough, {7, 11}, r, c), 2e-6 * field.at(r, c)) << r << " " << c;
+      EXPECT_NEAR(field.at(r, c), 0.25 + 1.5 * steepest_around(rough, {7, 11}, r, c), 2e-6 * field.at(r, c))
+          << r << " " << c;
     }
   }
 }
@@ -87,7 +92,7 @@ TEST(SamplingError, TrianglesWithAHoleDoNotCount) {
   const SampleField field = koppe(holey, 0, 1, cells(4, 1, 1));
   EXPECT_EQ(field.at(0, 0), 0);
   EXPECT_FLOAT_EQ(field.at(2, 1), 7 * std::sqrt(2.0f));  // (2,1)-(2,2)-(3,2) is whole
-  EXPECT_EQ(field.at(1, 2), 0);        // the hole itself: no whole triangle, a finite value
+  EXPECT_EQ(field.at(1, 2), 0);                          // the hole itself: no whole triangle, a finite value
   for (const float sigma : field.values().values()) EXPECT_TRUE(std::isfinite(sigma));
 }
 
@@ -104,7 +109,8 @@ TEST(SamplingError, AddsToAGridOfSigmaInPlace) {
   const float* storage = sigma_v.data();
   Progress progress;
   const auto sizes = cells(4, 1, 1);
-  const SampleField field = sampling_error(SampleField(std::move(sigma_v)), 3, Surroundings(plane), sizes, Workers(2), progress);
+  const SampleField field =
+      sampling_error(SampleField(std::move(sigma_v)), 3, Surroundings(plane), sizes, Workers(2), progress);
   EXPECT_EQ(field.values().data(), storage);
   EXPECT_FLOAT_EQ(field.at(2, 3), 2.3f + 6);
 }

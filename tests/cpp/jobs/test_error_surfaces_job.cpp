@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "jobs/error_surfaces_job.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstring>
 
+#include <gtest/gtest.h>
+
 #include "base/error.h"
+#include "jobs/error_surfaces_job.h"
 #include "support/says.h"
 #include "support/terrains.h"
 
@@ -21,10 +20,12 @@ using testing::kNan;
 using testing::says;
 
 Grid<float> terrain() {
-  return grid_from(50, 40, [](int r, int c) { return r == 7 && c == 9 ? double(kNan) : 100 + hills(r, c, 1, 6); });
+  return grid_from(50, 40,
+                   [](int r, int c) { return r == 7 && c == 9 ? double(kNan) : 100 + hills(r, c, 1, 6); });
 }
 
-ErrorSurfaces surfaces(const DemSource& dem, const ErrorModel& model, const ErrorSurfacesOptions& options = {}) {
+ErrorSurfaces surfaces(const DemSource& dem, const ErrorModel& model,
+                       const ErrorSurfacesOptions& options = {}) {
   Progress progress;
   return run_error_surfaces(dem, model, options, progress);
 }
@@ -53,7 +54,8 @@ TEST(ErrorSurfaces, RoundOutward) {
   const ErrorSurfaces out = surfaces(*dem, given());
   const Grid<float> heights = terrain();
   for (std::size_t i = 0; i < heights.size(); ++i) {
-    const double z = heights.values()[i], sigma = 0.5f + static_cast<double>(static_cast<float>(2 / kZ95)) * (1 - std::exp(-0.5 * 50 / 64));
+    const double z = heights.values()[i], sigma = 0.5f + static_cast<double>(static_cast<float>(2 / kZ95)) *
+                                                             (1 - std::exp(-0.5 * 50 / 64));
     if (std::isnan(z)) continue;
     EXPECT_GE(out.sigma.values()[i], sigma * (1 - 1e-15));
     EXPECT_LE(out.lower.values()[i], (z - kZ95 * sigma) * (1 + 1e-15));

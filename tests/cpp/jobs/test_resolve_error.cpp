@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "jobs/resolve_error.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstring>
+
+#include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "io/crs.h"
 #include "io/raster_writer.h"
+#include "jobs/resolve_error.h"
 #include "support/says.h"
-#include "support/scratch_folder.h"
+#include "support/scratch.h"
 #include "support/terrains.h"
 
 namespace sightbound {
@@ -22,7 +21,6 @@ using testing::hills;
 using testing::kNan;
 using testing::part_of;
 using testing::says;
-using testing::ScratchFolder;
 
 constexpr int kRows = 60, kCols = 50;
 
@@ -49,7 +47,8 @@ Resolved resolve(const ErrorModel& model, const DemSource& dem, const Window& wi
   Resolved out;
   out.model = complete_model(model, dem, out.warnings, progress);
   out.heights = dem.read(window, progress);
-  out.field = resolve_error(out.model, dem, georeference_of(dem), window, out.heights, out.warnings, Workers(threads), progress);
+  out.field = resolve_error(out.model, dem, georeference_of(dem), window, out.heights, out.warnings,
+                            Workers(threads), progress);
   return out;
 }
 
@@ -164,7 +163,8 @@ TEST(ResolveError, BadArraysAreNamed) {
     }
     return std::string();
   };
-  EXPECT_TRUE(says(refusal(Grid<float>(3, 4, 1.0f)), "vertical_rmse is an array of 3 x 4 values, but the DEM has 60 x 50"));
+  EXPECT_TRUE(says(refusal(Grid<float>(3, 4, 1.0f)),
+                   "vertical_rmse is an array of 3 x 4 values, but the DEM has 60 x 50"));
   EXPECT_TRUE(says(refusal(Grid<float>(kRows, kCols, -9999.0f)), "vertical_rmse (array) holds -9999"));
 }
 
@@ -173,7 +173,8 @@ TEST(ResolveError, AnIncompleteModelIsRefused) {
   Progress progress;
   std::vector<std::string> warnings;
   Grid<float> heights = dem->read(dem->window(), progress);
-  EXPECT_THROW(resolve_error(ErrorModel(), *dem, georeference_of(*dem), dem->window(), heights, warnings, Workers(1), progress),
+  EXPECT_THROW(resolve_error(ErrorModel(), *dem, georeference_of(*dem), dem->window(), heights, warnings,
+                             Workers(1), progress),
                InvalidInput);
 }
 
@@ -186,7 +187,8 @@ TEST(ResolveError, WindowsOfOneDemAgreeToTheLastBit) {
   for (const auto& geotransform : {testing::kNorthUp, testing::kSouthUp}) {
     const auto dem = dem_of(terrain(), geotransform);
     const Resolved whole = resolve(model, *dem, dem->window(), 1);
-    for (const Window& w : {Window{0, 0, 25, 30}, Window{21, 29, 9, 11}, Window{48, 58, 2, 2}, Window{0, 31, 50, 29}}) {
+    for (const Window& w :
+         {Window{0, 0, 25, 30}, Window{21, 29, 9, 11}, Window{48, 58, 2, 2}, Window{0, 31, 50, 29}}) {
       const Resolved part = resolve(whole.model, *dem, w, 3);
       const auto same = [&](const Grid<float>& a, const Grid<float>& b) {
         const Grid<float> expected = part_of(b, w);
@@ -200,22 +202,22 @@ TEST(ResolveError, WindowsOfOneDemAgreeToTheLastBit) {
   }
 }
 
-TEST(ResolveError, RastersAlignByGeoreference) {
-  const ScratchFolder folder;
+class ResolveErrorFiles : public testing::Scratch {};
+
+TEST_F(ResolveErrorFiles, RastersAlignByGeoreference) {
   Progress progress;
   // Twice the DEM's cells, the same area: sigma rises by 0.1 m per 20 m eastwards.
   const Grid<float> sigma = grid_from(kRows / 2, kCols / 2, [](int, int c) { return 1 + 0.1 * c; });
-  write_raster(folder.file("sigma.tif"), sigma, Geotransform({0, 20, 0, 0, 0, -20}), "", {}, 1, progress);
+  write_raster(path("sigma.tif"), sigma, Geotransform({0, 20, 0, 0, 0, -20}), "", {}, 1, progress);
   ErrorModel model = given(0, 1);
-  model.vertical_rmse = RasterFile{folder.file("sigma.tif"), 1};
+  model.vertical_rmse = RasterFile{path("sigma.tif"), 1};
   const Resolved r = resolve(model);
   EXPECT_NEAR(r.field.sampling.at(30, 20), 1 + 0.1 * (20.5 / 2 - 0.5), 1e-5);
 }
 
-TEST(ResolveError, TerrainTypesReplaceTheVariationInside) {
-  const ScratchFolder folder;
+TEST_F(ResolveErrorFiles, TerrainTypesReplaceTheVariationInside) {
   // The northern half is craggy.
-  const std::string polygons = folder.write("types.geojson", R"({"type": "FeatureCollection", "features": [
+  const std::string polygons = write_text("types.geojson", R"({"type": "FeatureCollection", "features": [
     {"type": "Feature", "properties": {"kind": "craggy"}, "geometry": {"type": "Polygon",
      "coordinates": [[[-10, 10], [600, 10], [600, -300], [-10, -300], [-10, 10]]]}}]})");
   ErrorModel model = given(0, 1);

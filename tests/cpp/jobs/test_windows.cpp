@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "jobs/windows.h"
+#include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "base/error.h"
+#include "jobs/windows.h"
 #include "support/says.h"
 #include "support/terrains.h"
 
@@ -61,7 +60,8 @@ TEST(SnapExtent, CoversTheCornersOnARotatedRaster) {
   for (const double x : {20.0, 25.0}) {
     for (const double y : {0.0, 5.0}) {
       const Xy at = rotated->geotransform().to_raster(x, y);
-      EXPECT_TRUE(at.x + 0.5 >= w.col && at.x + 0.5 <= w.col_end() && at.y + 0.5 >= w.row && at.y + 0.5 <= w.row_end());
+      EXPECT_TRUE(at.x + 0.5 >= w.col && at.x + 0.5 <= w.col_end() && at.y + 0.5 >= w.row &&
+                  at.y + 0.5 <= w.row_end());
     }
   }
   EXPECT_LT(w.cells(), 20u);

@@ -2,9 +2,9 @@
 // What messages say.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <string>
+
+#include <gtest/gtest.h>
 
 namespace sightbound::testing {
 

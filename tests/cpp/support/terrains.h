@@ -58,7 +58,8 @@ inline double noise(int r, int c, std::uint64_t seed) {
   return static_cast<double>(x >> 11) * 0x1p-53;
 }
 
-// Hills with bumps on them: sums of smooth value noise, halving in size and, with `roughness` H, 2^-H in height.
+// Hills with bumps on them: sums of smooth value noise, halving in size and, with `roughness` H, 2^-H in
+// height.
 inline double hills(int r, int c, double roughness, std::uint64_t seed) {
   double z = 0, height = 40;
   for (int size = 64; size >= 1; size /= 2, height *= std::exp2(-roughness)) {
@@ -74,7 +75,8 @@ inline double hills(int r, int c, double roughness, std::uint64_t seed) {
 }
 
 // A DEM that owns its heights, in the user's row order.
-inline std::unique_ptr<DemSource> dem_of(Grid<float> heights, const std::array<double, 6>& geotransform = kNorthUp) {
+inline std::unique_ptr<DemSource> dem_of(Grid<float> heights,
+                                         const std::array<double, 6>& geotransform = kNorthUp) {
   const auto owner = std::make_shared<Grid<float>>(std::move(heights));
   ArrayDem::Heights given{owner->data(), owner->rows(), owner->cols(), std::nan(""), 1, owner};
   return std::make_unique<ArrayDem>(std::move(given), Geotransform(geotransform), "");
