@@ -19,6 +19,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRim = kFrameTolerance;
 // Metres; keeps the rounding of a bound (1e-12 of a height) from excluding the place that decides.
 constexpr double kSlack = 1e-7;
+// A place nearer to an end than this many larger cell sides is the end itself: what is left of the clearance there is rounding.
+constexpr double kAtEnd = 1e-4;
 constexpr std::array kEndPlaces{1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 3.0 / 4};  // larger cell sides from an end
 
 // The terrain at a place: up to three samples with weights; those of weight 0 are left out.
@@ -80,7 +82,8 @@ class SightLine::NeededHeight {
   double best() const { return best_; }
   bool done() const { return best_ == kInfinity; }
   bool matters(double t, double clearance, double sigma_cap) const {
-    return line_.target_height_ + (k_ * sigma_cap - clearance) / t + kSlack > best_;
+    const double wanted = k_ > 0 ? k_ * sigma_cap : 0;  // the cap may be infinite
+    return line_.target_height_ + (wanted - clearance) / t + kSlack > best_;
   }
   bool take(double t, double clearance, double sigma) {
     // The place lacks k sigma - clearance; raising the target by 1 raises the line there by t.
@@ -114,7 +117,11 @@ class SightLine::Search {
     high_ = std::max(line.major0_, end);
     first_ = static_cast<int>(std::floor(low_)) + line.base_major_;
     last_ = std::max(first_, static_cast<int>(std::ceil(high_)) - 1 + line.base_major_);
+    at_end_ = kAtEnd * scene_.error.larger_side_m / line.distance_;
   }
+
+  // Is a place at this share of the distance strictly between the ends?
+  bool is_between(double t) const { return t > at_end_ && t < 1 - at_end_; }
 
   const Objective& objective() const { return objective_; }
   double critical_xi() const { return critical_xi_; }
@@ -275,14 +282,16 @@ class SightLine::Search {
   template <class Visitor>
   void crossing(int s, int j, double f, bool diagonal, double xi, const Visitor& visit) {
     const int next = j + (diagonal ? 1 : 0);
-    const bool outside = j < 0 || next > line_.minors_ - 1;
+    const bool before = j >= 0, beyond = next <= line_.minors_ - 1;  // which ends of the edge have a sample
+    // A line that follows the rim from without meets the diagonals there at their one sample.
+    const bool outside = !(before || f >= 1 - kRim) || !(beyond || f <= kRim);
     Stencil stencil;
     if (!outside) {
-      stencil.add(sample(s, j), 1 - f);
-      stencil.add(sample(s + 1, next), f);
+      stencil.add(before ? sample(s, j) : sample(s + 1, next), 1 - f);
+      stencil.add(beyond ? sample(s + 1, next) : sample(s, j), f);
     }
     const double nearest = std::min(f, 1 - f);
-    visit(stencil, outside, outside ? 0 : spacing(s, j, nearest, diagonal ? nearest : 0), xi);
+    visit(stencil, outside, outside ? 0 : spacing(s, std::max(j, 0), nearest, diagonal ? nearest : 0), xi);
   }
 
   // f > 0: larger cell sides from the observer; f < 0: from the target.
@@ -347,7 +356,7 @@ class SightLine::Search {
  private:
   void judge(const Stencil& stencil, bool outside, double d, double xi) {
     const double t = line_.path_.share(xi);
-    if (!(t > 0 && t < 1)) return;
+    if (!is_between(t)) return;
     const double z = outside ? std::numeric_limits<double>::quiet_NaN() : stencil.of(scene_.heights.data());
     if (std::isnan(z)) {
       if (!scene_.see_across_nodata && objective_.take_unknown()) {
@@ -370,6 +379,7 @@ class SightLine::Search {
   double bow_;
   double sigma_cap_ = kInfinity;  // no sigma of the places at hand is larger
   double low_, high_;
+  double at_end_;  // share of the distance
   int first_, last_;
   double critical_xi_ = -1;
   bool hole_ = false;
@@ -426,7 +436,7 @@ void SightLine::for_each_place(const std::function<void(const JudgedPlace&)>& vi
   Search search(*this, LeastRatio(*this, -scene_.largest_ratio));
   search.every_place([&](const Stencil& stencil, bool outside, double d, double xi) {
     const JudgedPlace place = search.described(stencil, outside, d, xi);
-    if (place.share > 0 && place.share < 1) visit(place);
+    if (search.is_between(place.share)) visit(place);
   });
 }
 

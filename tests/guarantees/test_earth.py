@@ -10,6 +10,7 @@ from judge import Scene
 from sight_oracle import Errors
 
 SHAPE = (60, 60)
+EYE = 15.0
 CRSS = {"degrees at 5": ((20.0, 0.01, 0, 5.0, 0, -0.01), "EPSG:4326"),
         "degrees at 60": ((20.0, 0.01, 0, 60.0, 0, -0.01), "EPSG:4326"),
         "degrees at 77": ((20.0, 0.02, 0, 77.0, 0, -0.005), "EPSG:4326"),
@@ -26,7 +27,7 @@ CRSS = {"degrees at 5": ((20.0, 0.01, 0, 5.0, 0, -0.01), "EPSG:4326"),
 def flat(earth, **more):
     gt, crs = CRSS[earth]
     return Scene(earth, np.zeros(SHAPE, np.float32), gt, crs, **{"errors": Errors(vertical=0.0), "observer": (8.3, 41.6),
-                                                                "observer_height": 40.0, **more})
+                                                                "observer_height": EYE, **more})
 
 
 @pytest.mark.parametrize("earth", CRSS)
@@ -37,7 +38,7 @@ def test_distance_and_azimuth(earth):
     rng = np.random.default_rng(7)
     for _ in range(20):
         target = tuple(float(v) for v in oracle.frame.xy(*rng.uniform(0, 59, 2)))
-        line = sb.line_of_sight(scene.dem, xy, target, observer_height=40.0, error_model=scene.model)
+        line = sb.line_of_sight(scene.dem, xy, target, observer_height=EYE, error_model=scene.model)
         distance, azimuth = oracle.frame.inverse_geodesic(xy, target)
         assert line.distance == pytest.approx(distance, abs=1e-5 * oracle.cell)
         assert (line.azimuth - azimuth + 180) % 360 - 180 == pytest.approx(0, abs=math.degrees(1e-4 * oracle.cell / distance))
@@ -55,12 +56,12 @@ def test_a_tower_behind_the_horizon(earth, refraction):
     heights = []
     for col, row in ((59.0, 3.0), (55.0, 59.0), (2.0, 0.0)):
         target = tuple(float(v) for v in oracle.frame.xy(col, row))
-        line = sb.line_of_sight(scene.dem, xy, target, observer_height=40.0, error_model=scene.model, refraction=refraction)
+        line = sb.line_of_sight(scene.dem, xy, target, observer_height=EYE, error_model=scene.model, refraction=refraction)
         distance, azimuth = oracle.frame.inverse_geodesic(xy, target)
         radius = oracle.frame.euler_radius(xy, azimuth, distance) / (1 - refraction)
-        beyond = distance - math.sqrt(2 * radius * 40.0)
+        beyond = distance - math.sqrt(2 * radius * EYE)
         assert beyond > 0
-        share = math.sqrt(2 * radius * 40.0) / distance
+        share = math.sqrt(2 * radius * EYE) / distance
         slack = (oracle.cell ** 2 / (8 * radius) + 0.002) / share
         heights.append(line.required_height)
         assert line.required_height == pytest.approx(beyond ** 2 / (2 * radius), abs=slack)
@@ -82,7 +83,7 @@ def test_the_same_ground_in_two_systems():
         return Scene(crs, np.float32(hill(lon, lat)), gt, crs, Errors(vertical=2.0)), frame
 
     utm, utm_frame = scene((500500.0, 25.0, 0, 6654500.0, 0, -25.0), "EPSG:32633", (160, 160))
-    degrees, degrees_frame = scene((15.005, 25 / 55800, 0, 60.045, 0, -25 / 111400), "EPSG:4326", (200, 160))
+    degrees, degrees_frame = scene((15.002, 25 / 55800, 0, 60.035, 0, -25 / 111400), "EPSG:4326", (200, 175))
     eye = (15.04, 60.025)
     a = sb.viewshed(utm.dem, [ground.transform(*eye, direction="INVERSE")], observer_height=20.0, error_model=utm.model)
     b = sb.viewshed(degrees.dem, [eye], observer_height=20.0, error_model=degrees.model)

@@ -24,6 +24,13 @@ def degrees(name, latitude, step=(1 / 1200, 1 / 1200), shape=SMALL, relief=120.0
     return Scene(name, terrains.fractal(shape, 21, relief), gt, "EPSG:4326", **more)
 
 
+def lattice_of_holes(z):
+    """Every line between samples passes exactly through samples that have holes for neighbours."""
+    z = z.copy()
+    z[::4, ::4] = np.nan
+    return z
+
+
 EARTH = [
     Scene("plane without CRS", terrains.fractal(SMALL, 1), errors=SOFT),
     utm("UTM"),
@@ -96,6 +103,8 @@ TERRAIN = [
     Scene("holes", terrains.with_holes(terrains.fractal(SMALL, 45), 46, keep=(12, 11)), errors=SOFT, observer=(12.0, 11.0), observer_height=12.0),
     Scene("holes, sight crosses", terrains.with_holes(terrains.fractal(SMALL, 45), 46, keep=(12, 11)), errors=SOFT, observer=(12.0, 11.0),
           observer_height=12.0, how=dict(see_across=True)),
+    Scene("lattice of holes, lines through the samples between", lattice_of_holes(terrains.fractal(SMALL, 52)), errors=SOFT,
+          observer=(9.0, 7.0), observer_height=25.0),
     utm("holes in UTM", z=terrains.with_holes(terrains.fractal(SMALL, 47), 48, keep=(12, 11)), observer=(12.3, 11.2), observer_height=12.0),
     utm("holes, standing on the ground", z=terrains.with_holes(terrains.fractal(SMALL, 47), 48, keep=(12, 11)), observer=(12.3, 11.2),
         observer_height=12.0, how=dict(stand="ground")),

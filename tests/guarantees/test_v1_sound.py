@@ -53,27 +53,35 @@ def test_along_the_whole_line(scene):
 
 
 def least_clearances(oracle, o_xy, t_xy, height, surfaces, z):
-    """For each surface the least of line - surface, every 1/20 cell and at the judged places, ends not included."""
+    """For each surface the least of line - surface, at the judged places and every 1/20 cell between them. Sigma jumps where
+    the end zone begins: between the last place inside it and the first outside, the surface is left where it is."""
     distance, azimuth = oracle.frame.inverse_geodesic(o_xy, t_xy)
     if distance == 0:
         return [np.inf]
     judged, _, _ = oracle.judged_places(o_xy, azimuth, distance, t_xy)
-    dense = np.linspace(0, distance, 2 + int(20 * distance / oracle.cell))
-    s = np.concatenate([judged, dense[(dense > oracle.cell / 16) & (dense < distance - oracle.cell / 16)]])
-    if s.size == 0:
+    if judged.size == 0:
         return [np.inf]
+
+    def at_end(s):
+        return (s < END_ZONE * oracle.cell) | (distance - s < END_ZONE * oracle.cell)
+
+    dense = np.linspace(judged[0], judged[-1], 2 + int(20 * distance / oracle.cell))
+    before = np.clip(np.searchsorted(judged, dense, "right") - 1, 0, judged.size - 1)
+    after = np.clip(before + 1, 0, judged.size - 1)
+    s = np.concatenate([judged, dense])
+    near = np.concatenate([at_end(judged), at_end(judged[before]) & at_end(judged[after])])
+    mixed = np.concatenate([np.zeros(judged.size, bool), at_end(judged[before]) != at_end(judged[after])])
+
     col, row = oracle.frame.path(o_xy, azimuth, s)
-    ends = [oracle.at(oracle.z, *oracle.frame.colrow(*p)) for p in (o_xy, t_xy)]
+    ends = [float(oracle.at(oracle.z, *oracle.frame.colrow(*p))) for p in (o_xy, t_xy)]
     t, bend = s / distance, (1 - 0.13) / (2 * oracle.frame.euler_radius(o_xy, azimuth, distance))
     line = (1 - t) * (ends[0] + height) + t * ends[1] - bend * t * (1 - t) * distance ** 2
-    near_end = (s < END_ZONE * oracle.cell) | (distance - s < END_ZONE * oracle.cell)
     terrain = oracle.at(oracle.z, col, row)
     least = []
-    for surface in surfaces:
-        sign = np.sign(surface[0, 0] - oracle.z[0, 0])
-        there = np.where(near_end, terrain + sign * z * FLOOR, oracle.at(surface, col, row))
-        clear = line - there
-        least.append(float(np.nanmin(clear)))
+    for i, surface in enumerate(surfaces):
+        floor = z * FLOOR * (1 if i % 2 == 0 else -1)
+        there = np.where(near, terrain + floor, np.where(mixed, terrain, oracle.at(surface, col, row)))
+        least.append(float(np.min(line - there)))
     return least
 
 

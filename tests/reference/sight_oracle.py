@@ -34,7 +34,7 @@ CERTAIN_K = 3.29        # beyond, p is 0 or 1
 SAMPLES_PER_CELL = 6    # dense sampling of the path before root finding
 SNAP = 2e-8             # a sample coordinate this near to an integer is that integer (UTM northings carry 1e-9 m)
 ROOT = 1e-8             # crossings are found to this many cells
-AT_END = 1e-6           # a crossing this many cells from an end is the end itself, and not judged
+AT_END = 1e-4           # a place this many cells from an end is the end itself, and not judged
 
 
 def z_two_sided(confidence):
