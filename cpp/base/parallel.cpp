@@ -6,6 +6,7 @@
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <string>
 
 #include "base/error.h"
@@ -20,7 +21,9 @@ int thread_count(int threads) {
     throw InvalidInput("threads is " + std::to_string(threads) + "; give 0 (all cores) to " +
                        std::to_string(kMaxThreads) + ".");
   }
-  return threads > 0 ? threads : tbb::this_task_arena::max_concurrency();
+  // More threads than cores gain nothing, and TBB complains of them on stderr.
+  const int cores = tbb::this_task_arena::max_concurrency();
+  return threads > 0 ? std::min(threads, cores) : cores;
 }
 }  // namespace
 

@@ -12,7 +12,7 @@ namespace sightbound {
 // numbers do not disturb each other.
 class Workers {
  public:
-  // 0 = as many as the machine has.
+  // 0 = as many as the machine has, which is also the most that are used.
   explicit Workers(int threads = 0);
   ~Workers();
   Workers(const Workers&) = delete;

@@ -101,9 +101,9 @@ Table from_csv(const std::string& text, const std::string& path) {
 Table read_terrain_table(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw IoError("The terrain table cannot be opened: '" + path + "'.");
+  file.peek();
+  if (file.bad()) throw IoError("The terrain table cannot be read: '" + path + "'.");  // a folder
   std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad() || (text.empty() && !file.eof()))
-    throw IoError("The terrain table cannot be read: '" + path + "'.");
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   const bool json = first != std::string::npos && (text[first] == '{' || text[first] == '[');
