@@ -4,6 +4,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from osgeo import gdal
 from qgis.core import (
     QgsCoordinateTransform,
     QgsFeature,
@@ -14,7 +15,7 @@ from qgis.core import (
 )
 
 from .errors import bad_input, core_errors
-from .rasters import read_raster
+from .rasters import read_raster, same_ground
 from .text import tr
 from .values import given, number_or_none, word
 
@@ -40,11 +41,13 @@ class ErrorChoice:
     def model(self, sightbound):
         """The core's ErrorModel, or None for its estimate from the DEM."""
         if self.file:
-            with core_errors("ERROR_MODEL"):
+            try:
                 return sightbound.ErrorModel.from_json(Path(self.file).read_text(encoding="utf-8"))
+            except (ValueError, OSError) as error:
+                raise bad_input("ERROR_MODEL", f"{self.file}: {error}") from error
         if not self.accuracy and not self.other:
             return None
-        with core_errors("VERTICAL_ACCURACY"):
+        with core_errors():
             return sightbound.ErrorModel.from_accuracy(**self.accuracy, **self.other)
 
 
@@ -87,6 +90,7 @@ def _from_file(algorithm, parameters, context, feedback):
     path = algorithm.parameterAsFile(parameters, "ERROR_MODEL", context)
     if not Path(path).is_file():
         raise bad_input("ERROR_MODEL", tr("there is no file {}.").format(path))
+    algorithm.paths[path] = "ERROR_MODEL"
     ignored = [name for name in _INPUTS if _says_something(algorithm, parameters, name)]
     if ignored:
         feedback.pushWarning(tr("ERROR_MODEL replaces {}.").format(", ".join(ignored)))
@@ -136,23 +140,32 @@ def _polygons(algorithm, parameters, context, dem):
         raise bad_input(
             "TERRAIN_TYPES", tr("the layer {} cannot be read.").format(parameters["TERRAIN_TYPES"])
         )
-    layer = algorithm.parameterAsVectorLayer(parameters, "TERRAIN_TYPES", context)
-    if layer is not None and source.sourceCrs() == dem.crs and source.featureCount() == layer.featureCount():
-        if (
-            layer.dataProvider().name() == "ogr"
-            and "|" not in layer.source()
-            and Path(layer.source()).is_file()
-        ):
-            return layer.source()
     name = algorithm.parameterAsFields(parameters, "TERRAIN_FIELD", context)[0]
-    return _copy_polygons(source, name, dem.crs, context)
-
-
-def _copy_polygons(source, name, crs, context):
     index = source.fields().lookupField(name)
     if index < 0:
         names = ", ".join(one.name() for one in source.fields())
         raise bad_input("TERRAIN_FIELD", tr("the layer has no field {!r}; it has {}.").format(name, names))
+    layer = algorithm.parameterAsVectorLayer(parameters, "TERRAIN_TYPES", context)
+    path = _plain_file(layer, source) or _copy_polygons(source, index, dem.crs, context)
+    algorithm.paths[path] = "TERRAIN_TYPES"
+    return path
+
+
+def _plain_file(layer, source):
+    """The path of the layer's file if the file alone says the same as the layer: all features, the same CRS."""
+    if layer is None or layer.dataProvider().name() != "ogr" or not Path(layer.source()).is_file():
+        return ""
+    dataset = gdal.OpenEx(layer.source(), gdal.OF_VECTOR)
+    if (
+        dataset is None
+        or dataset.GetLayerCount() != 1
+        or source.featureCount() != dataset.GetLayer(0).GetFeatureCount()
+    ):
+        return ""
+    return layer.source() if same_ground(dataset.GetLayer(0).GetSpatialRef(), layer.crs()) else ""
+
+
+def _copy_polygons(source, index, crs, context):
     fields = QgsFields()
     fields.append(source.fields().at(index))
     path = QgsProcessingUtils.generateTempFilename("terrain_types.gpkg")

@@ -41,9 +41,11 @@ _WORD_OF = {
     "stand": "STAND",
     "band": "BAND",
 }
+# Labels of features hold the name of their layer's parameter.
+_LAYERS = ("OBSERVERS", "OBSERVER", "TARGETS")
 _NAMES = re.compile(r"\b(" + "|".join(_PARAMETER_OF) + r")\b")
 _WORDS = re.compile(r"^(" + "|".join(_WORD_OF) + r")(?= is | \(| of | must )")
-_PARAMETERS = re.compile("|".join([*_PARAMETER_OF.values(), *_WORD_OF.values()]))
+_PARAMETERS = re.compile(r"\b(" + "|".join([*_PARAMETER_OF.values(), *_WORD_OF.values(), *_LAYERS]) + r")\b")
 
 
 def bad_input(parameter, sentence):
@@ -58,32 +60,35 @@ def in_our_words(message):
 
 
 @contextmanager
-def core_errors(parameter=None, about=""):
+def core_errors(parameter=None, paths=None, rename=None):
     """Turns what the core raises into QgsProcessingExceptions.
 
-    `parameter` is blamed when the message names none of the core's arguments; `about` tells which feature was at
-    work.
+    The parameter to blame is that of the file which the message names (`paths`: path -> parameter), else the one of
+    the core's arguments that it names, else `parameter`. `rename` changes the message first.
     """
     try:
         yield
     except (ValueError, OSError) as error:
-        raise _named(str(error), parameter, about) from error
+        message = rename(str(error)) if rename else str(error)
+        raise _blamed(message, parameter, paths or {}) from error
     except MemoryError as error:
-        advice = tr("Reduce MAX_DISTANCE or EXTENT, or close other programs.")
         what = in_our_words(str(error)) or tr("Not enough memory.")
+        advice = tr("Reduce MAX_DISTANCE or EXTENT, or close other programs.")
         raise QgsProcessingException(f"{what} {advice}") from error
     except RuntimeError as error:
-        if type(error).__name__ == "Cancelled":
-            raise
         advice = tr("This is a fault of Sightbound: please report it with the log of this run.")
         raise QgsProcessingException(f"{error} {advice}") from error
 
 
-def _named(message, parameter, about):
+def _blamed(message, parameter, paths):
+    for path, its_parameter in paths.items():
+        if path in message:
+            return bad_input(its_parameter, message)
     message = in_our_words(message)
     named = _PARAMETERS.search(message)
     if named and named.start() == 0:
-        parameter = None
-    elif named:
-        parameter = named.group(0)
-    return QgsProcessingException(": ".join(part for part in (parameter, about, message) if part))
+        return QgsProcessingException(message)
+    if not named and message.startswith("The DEM"):
+        parameter = "INPUT"
+    parameter = named.group(0) if named else parameter
+    return bad_input(parameter, message) if parameter else QgsProcessingException(message)

@@ -238,7 +238,7 @@ def sight_block():
         ),
         advanced(raster("GROUND", tr("Ground under a surface model, for heights above it"), True)),
         vertical_unit_parameter(),
-        advanced(number("REFRACTION", tr("Refraction coefficient"), default("refraction"), -2.0, 2.0)),
+        advanced(number("REFRACTION", tr("Refraction coefficient"), default("refraction"), -1.0, 1.0)),
         advanced(
             QgsProcessingParameterBoolean(
                 "CURVATURE", tr("Curvature of the Earth"), default("curvature"), True

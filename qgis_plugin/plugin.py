@@ -16,6 +16,8 @@ class SightboundPlugin:
         if self.provider is None:
             self.provider = SightboundProvider()
             QgsApplication.processingRegistry().addProvider(self.provider)
+            # A model finds the algorithms it is made of only when their provider is registered.
+            self.provider.refreshAlgorithms()
 
     def initGui(self):
         self.initProcessing()

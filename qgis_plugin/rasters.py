@@ -36,7 +36,9 @@ def read_raster(algorithm, parameters, name, context, feedback, band_name=None):
             band_name or name, tr("there is no band {}; the raster has {}.").format(band, layer.bandCount())
         )
     cell = min(layer.rasterUnitsPerPixelX(), layer.rasterUnitsPerPixelY())
-    return Raster(_with_crs_of(layer, path, name, feedback), band, layer.crs(), layer.extent(), cell)
+    path = _with_crs_of(layer, path, name, feedback)
+    algorithm.paths[path] = name
+    return Raster(path, band, layer.crs(), layer.extent(), cell)
 
 
 def open_dem(sightbound, raster, vertical_unit, feedback):
@@ -77,25 +79,29 @@ def _with_crs_of(layer, path, name, feedback):
     stated = gdal.Open(path)
     if stated is None:
         raise bad_input(name, tr("GDAL cannot open {}.").format(path))
-    wkt = layer.crs().toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED_GDAL)
-    if _same_ground(stated.GetSpatialRef(), osr.SpatialReference(wkt)):
+    if same_ground(stated.GetSpatialRef(), layer.crs()):
         return path
+    wkt = _wkt(layer.crs())
     feedback.pushInfo(tr("{}: the CRS set in QGIS ({}) is used.").format(name, layer.crs().authid() or wkt))
     copy = QgsProcessingUtils.generateTempFilename(f"{name.lower()}.vrt")
     gdal.Translate(copy, stated, format="VRT", outputSRS=wkt)
     return copy
 
 
-def _same_ground(stated, wanted):
-    """Is it the same CRS, heights aside?"""
-    if stated is None:
-        return False
-    pair = [stated.Clone(), wanted.Clone()]
+def same_ground(stated, crs):
+    """Does a file's CRS (as GDAL has it) equal that of a layer, heights aside?"""
+    if stated is None or not crs.isValid():
+        return stated is None and not crs.isValid()
+    pair = [stated.Clone(), osr.SpatialReference(_wkt(crs))]
     for system in pair:
         if system.IsCompound():
             system.StripVertical()
     options = ["IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT"]
     return bool(pair[0].IsSame(pair[1], options))
+
+
+def _wkt(crs):
+    return crs.toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED_GDAL)
 
 
 def creation_options(algorithm, parameters, context):

@@ -32,6 +32,7 @@ class SightboundAlgorithm(QgsProcessingAlgorithm):
 
     def __init__(self):
         super().__init__()
+        self.paths = {}  # of input files -> parameter, for messages
         self._failure = None
 
     def createInstance(self):
@@ -120,7 +121,7 @@ class SightboundAlgorithm(QgsProcessingAlgorithm):
             raise self._failure
         sightbound = self._require_core()
         try:
-            with core_errors():
+            with core_errors(paths=self.paths):
                 return self.compute(sightbound, parameters, context, feedback)
         except sightbound.Cancelled:
             feedback.pushInfo(tr("Cancelled: nothing was written."))

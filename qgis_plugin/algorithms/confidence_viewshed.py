@@ -150,8 +150,7 @@ class ConfidenceViewshed(SightboundAlgorithm):
         spots = [(place.x, place.y) for place in job.places]
         rasters_too = given(parameters, "OUTPUT_FOLDER")
         progress = Progress(feedback, 0.0, 50.0 if rasters_too else 95.0)
-        with core_errors("OBSERVERS" if job.source else "OBSERVER"):
-            result = sightbound.viewshed(dem, spots, progress=progress, **arguments)
+        result = sightbound.viewshed(dem, spots, progress=progress, **arguments)
         self._log(result.report, feedback)
         results = {}
         if rasters_too:
@@ -176,7 +175,7 @@ class ConfidenceViewshed(SightboundAlgorithm):
     def _write(self, result, parameters, context, feedback):
         wanted = [row for row in RASTERS if given(parameters, row[0])]
         paths = {row[0]: self.parameterAsOutputLayer(parameters, row[0], context) for row in wanted}
-        with core_errors("OUTPUT"):
+        with core_errors("OUTPUT", {path: name for name, path in paths.items()}):
             result.write(
                 **{row[2]: paths[row[0]] for row in wanted},
                 creation_options=self.job.options,

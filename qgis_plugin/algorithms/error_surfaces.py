@@ -89,7 +89,7 @@ class ErrorSurfaces(SightboundAlgorithm):
             feedback.pushWarning(warning)
         wanted = [row for row in RASTERS if given(parameters, row[0])]
         results = {row[0]: self.parameterAsOutputLayer(parameters, row[0], context) for row in wanted}
-        with core_errors("OUTPUT_SIGMA"):
+        with core_errors("OUTPUT_SIGMA", {path: name for name, path in results.items()}):
             surfaces.write(
                 **{row[2]: results[row[0]] for row in wanted},
                 creation_options=self.options,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Line of sight profile: is each line clear, how surely, and where is that decided?"""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -149,14 +150,13 @@ class LineOfSightProfile(SightboundAlgorithm):
         if self.ground is not None:
             arguments["ground"] = self.ground.path
         eyes, targets = zip(*self.pairs)
-        with core_errors("TARGETS"):
+        with core_errors(paths=self.paths, rename=self._with_labels):
             sights = sightbound.lines_of_sight(
                 dem,
                 [(place.x, place.y) for place in eyes],
                 [(place.x, place.y) for place in targets],
                 observer_height=[place.values["OBSERVER_HEIGHT"] for place in eyes],
                 target_height=[place.values["TARGET_HEIGHT"] for place in targets],
-                names=[f"{eye.label} → {target.label}" for eye, target in self.pairs],
                 progress=Progress(feedback, 0.0, 95.0),
                 **arguments,
             )
@@ -166,6 +166,17 @@ class LineOfSightProfile(SightboundAlgorithm):
         for warning in dict.fromkeys(text for sight in sights for text in sight.report["warnings"]):
             feedback.pushWarning(warning)
         return self._write(lines, used, parameters, context, feedback)
+
+    def _with_labels(self, message):
+        """The core counts the ends of the lines; users know them as features of two layers."""
+
+        def label(found):
+            number = int(found.group(2)) - 1
+            if number >= len(self.pairs):
+                return found.group(0)
+            return self.pairs[number][found.group(1).lower() == "target"].label
+
+        return re.sub(r"\b([Oo]bserver|[Tt]arget) (\d+)\b", label, message)
 
     def _write(self, lines, used, parameters, context, feedback):
         results = {"ERROR_MODEL_USED": used}

@@ -120,6 +120,11 @@ def test_observer_on_nodata_names_the_feature(refused, tmp_path):
     dem = str(scenes.write_dem(tmp_path / "hole.tif", heights))
     layer = str(scenes.write_observers(tmp_path / "on_hole.gpkg"))
     assert says(refused(INPUT=dem, OBSERVERS=layer), "OBSERVERS", "feature 2 of OBSERVERS", "nodata")
+    lines = {"algorithm": "lineofsightprofile", "INPUT": dem}
+    near = str(scenes.write_observers(tmp_path / "near.gpkg", places=[scenes.FIRST]))
+    assert says(refused(**lines, OBSERVERS=near, TARGETS=layer), "TARGETS", "feature 2 of TARGETS", "nodata")
+    point = f"{scenes.SECOND[0]},{scenes.SECOND[1]} [EPSG:{scenes.UTM}]"
+    assert says(refused(INPUT=dem, OBSERVER=point), "OBSERVER ", "nodata")
 
 
 def test_feature_without_a_point(refused, tmp_path):
@@ -159,8 +164,8 @@ def test_unknown_terrain_type_is_listed(refused, tmp_path):
     types = str(scenes.write_terrain_types(tmp_path / "types.gpkg", kinds=("grassland", "moon")))
     common = {"algorithm": "errorsurfaces", "TERRAIN_TYPES": types}
     assert says(refused(**common), "TERRAIN_FIELD:", "TERRAIN_TYPES")
-    assert says(refused(**common, TERRAIN_FIELD="kind"), "TERRAIN_T", "moon")
-    assert says(refused(**common, TERRAIN_FIELD="sort"), "TERRAIN_FIELD", "sort")
+    assert says(refused(**common, TERRAIN_FIELD="kind"), "TERRAIN_TYPES:", "moon", "craggy")
+    assert says(refused(**common, TERRAIN_FIELD="sort"), "TERRAIN_FIELD:", "'sort'", "kind")
 
 
 @pytest.mark.parametrize("table", ["grassland,0.5,craggy", "grassland,soft", "/nowhere/table.csv"])
@@ -173,7 +178,7 @@ def test_terrain_table_that_is_none(refused, tmp_path, table):
 def test_error_raster_elsewhere(refused, tmp_path):
     values = numpy.ones((5, 5), "float32")
     elsewhere = scenes.write_raster(tmp_path / "off.tif", values, (0.0, 10.0, 0, 100.0, 0, -10.0), scenes.UTM)
-    assert says(refused("errorsurfaces", ERROR_RASTER=str(elsewhere)), "ERROR_RASTER")
+    assert says(refused("errorsurfaces", ERROR_RASTER=str(elsewhere)), "ERROR_RASTER:")
 
 
 def test_pairs(refused, observers, tmp_path):

@@ -9,25 +9,26 @@ import scenes
 @pytest.fixture
 def large_dem(tmp_path):
     """Large enough for the core to tell its progress several times."""
-    row, col = numpy.mgrid[0:900, 0:900]
+    row, col = numpy.mgrid[0:400, 0:400]
     heights = (100.0 + 30.0 * numpy.sin(col / 17.0) * numpy.cos(row / 23.0)).astype("float32")
     return str(scenes.write_dem(tmp_path / "large.tif", heights))
 
 
 @pytest.fixture
 def many(tmp_path):
-    places = [(scenes.WEST + 900.0 + 70.0 * i, scenes.NORTH - 900.0 - 61.0 * i) for i in range(60)]
+    places = [(scenes.WEST + 900.0 + 90.0 * i, scenes.NORTH - 900.0 - 81.0 * i) for i in range(30)]
     return str(scenes.write_points(tmp_path / "many.gpkg", [(*place, {}) for place in places], {}))
 
 
 def left_in(folder, *known):
-    return sorted(one.name for one in folder.iterdir() if one.name not in known)
+    """What a run left beside the `known` files and the statistics that QGIS keeps of rasters."""
+    return sorted(one.name for one in folder.iterdir() if one.name not in known and one.suffix != ".xml")
 
 
 @pytest.mark.parametrize("percent", [5, 30, 70])
 def test_viewshed_leaves_nothing(run, large_dem, many, tmp_path, percent):
     log = scenes.Log(cancel_at=percent)
-    out = {name: str(tmp_path / f"{name}.tif") for name in ("OUTPUT", "OUTPUT_VERDICT", "OUTPUT_HEIGHT")}
+    out = {name: str(tmp_path / f"{name}.tif") for name in ("OUTPUT", "OUTPUT_VERDICT")}
     results = run("confidenceviewshed", feedback=log, INPUT=large_dem, OBSERVERS=many, OUTPUT_FOLDER=str(tmp_path / "each"),
                   OUTPUT_OBSERVERS=str(tmp_path / "table.gpkg"), **out)  # fmt: skip
     assert log.isCanceled() and results == {}
