@@ -3,10 +3,12 @@
 
     scripts/build.sh && PYTHONPATH=build/python /usr/bin/python3 scripts/make_figures.py
 
-Both viewsheds look from the sample's fire tower at ground level over 12 km, on the sample DEM brought to UTM (an ordinary
-viewshed needs metres); the error of the DEM is estimated from the DEM itself.
+Both viewsheds look from the sample's northern spur at 2 m targets, with the same samples. Sightbound takes the DEM as it is, in degrees,
+and estimates its error from itself; an ordinary viewshed needs metres, so it gets the DEM in the equirectangular projection
+of its middle latitude, where cells in degrees stay cells and nothing is resampled.
 """
 
+import math
 import tempfile
 from pathlib import Path
 
@@ -18,83 +20,78 @@ gdal.UseExceptions()
 ogr.UseExceptions()
 
 ROOT = Path(__file__).resolve().parent.parent
-UTM = "EPSG:32616"
-CELL = 80.0  # metres: the sample's 3" are 74 x 92 m
-OBSERVER = "Fire tower"
-REACH = 12000.0
+DEM = ROOT / "sample_data" / "jacksboro.tif"
+OBSERVERS = ROOT / "sample_data" / "observers.gpkg"
+OBSERVER = "Northern spur"
+WINDOW = (0.28, 0.42, 0.95, 0.975)  # what the maps show of the DEM
 TARGET_HEIGHT = 2.0
 REFRACTION = 0.13
 
 
-def observer_in_utm():
-    """x, y in UTM, height of the eye above ground."""
-    source = ogr.Open(str(ROOT / "sample_data" / "observers.gpkg"))
-    layer = source.GetLayer(0)
-    utm = osr.SpatialReference()
-    utm.ImportFromEPSG(int(UTM.split(":")[1]))
-    (feature,) = [f for f in layer if f["name"] == OBSERVER]
-    point = feature.GetGeometryRef().Clone()
-    point.TransformTo(utm)
-    return point.GetX(), point.GetY(), feature["eye_height"]
+def observer():
+    """Longitude, latitude, height of the eye above ground."""
+    source = ogr.Open(str(OBSERVERS))
+    ((lon, lat, eye_height),) = [(f.GetGeometryRef().GetX(), f.GetGeometryRef().GetY(), f["eye_height"])
+                                 for f in source.GetLayer(0) if f["name"] == OBSERVER]
+    return lon, lat, eye_height
 
 
-def write_observer(path, x, y):
-    source = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
-    utm = osr.SpatialReference()
-    utm.ImportFromEPSG(int(UTM.split(":")[1]))
-    layer = source.CreateLayer("observer", utm, ogr.wkbPoint)
-    layer.CreateField(ogr.FieldDefn("name", ogr.OFTString))
-    feature = ogr.Feature(layer.GetLayerDefn())
-    feature["name"] = OBSERVER
-    point = ogr.Geometry(ogr.wkbPoint)
-    point.AddPoint_2D(x, y)
-    feature.SetGeometry(point)
-    layer.CreateFeature(feature)
+def run_sightbound(folder, lon, lat, eye_height):
+    """Shares of visible, uncertain, hidden, and the verdict; the raster is confidence.tif."""
+    result = sb.viewshed(sb.read_dem(str(DEM)), [(lon, lat)], observer_height=eye_height, target_height=TARGET_HEIGHT,
+                         refraction=REFRACTION)
+    result.write(str(folder / "confidence.tif"))
+    return [result.report[f"{word}_share"] for word in ("visible", "uncertain", "hidden")], result.verdict
+
+
+def run_ordinary(folder, lon, lat, eye_height):
+    """Which cells are visible; the raster is ordinary.tif, coded like a verdict."""
+    degrees = gdal.Open(str(DEM))
+    left, width, _, top, _, height = degrees.GetGeoTransform()
+    middle = top + 0.5 * degrees.RasterYSize * height
+    metres = osr.SpatialReference()
+    metres.ImportFromProj4(f"+proj=eqc +lat_ts={middle} +datum=WGS84 +units=m")
+    across, down = (math.radians(1.0) * metres.GetSemiMajor() * share for share in (math.cos(math.radians(middle)), 1.0))
+    dem = gdal.Translate(str(folder / "metres.tif"), degrees, outputType=gdal.GDT_Float32)
+    dem.SetProjection(metres.ExportToWkt())
+    dem.SetGeoTransform((left * across, width * across, 0.0, top * down, 0.0, height * down))
+    ordinary = gdal.ViewshedGenerate(
+        dem.GetRasterBand(1), "GTiff", str(folder / "ordinary.tif"), [], lon * across, lat * down, eye_height,
+        TARGET_HEIGHT, 2, 0, 255, 255, 1.0 - REFRACTION, gdal.GVM_Edge, 0.0)
+    return ordinary.ReadAsArray() == 2
+
+
+def draw(folder, shares, verdict, seen):
+    styles = ROOT / "qgis_plugin" / "styles"
+    relief = maps.hillshade(DEM, folder)
+    place = maps.points(OBSERVERS, "Observer", "name")
+    place.setSubsetString(f"name = '{OBSERVER}'")
+    confidence = maps.raster(folder / "confidence.tif", "Confidence of being seen", styles / "confidence.qml")
+    maps.name_ramp_ends(confidence, "0  surely hidden", "1  surely visible")
+    ordinary = maps.raster(folder / "ordinary.tif", "Ordinary viewshed", styles / "verdict.qml")
+    maps.write_page(
+        ROOT / "docs" / "images" / "viewshed.png",
+        "",
+        [
+            maps.Panel([place, confidence, relief], "Sightbound",
+                       "Surely visible {:.1f} %, in doubt {:.1f} %, surely hidden {:.1f} %.".format(*(100.0 * s for s in shares))),
+            maps.Panel([place, ordinary, relief], "An ordinary viewshed",
+                       f"Visible {100.0 * seen.mean():.1f} %. That {100.0 * (verdict[seen] != 2).mean():.0f} % of it is in doubt, "
+                       "it does not say."),
+        ],
+        [place, confidence],
+        window=WINDOW, width_mm=260.0,
+        footer="Terrain: U.S. Geological Survey, public domain. Eye 1.7 m, targets 2 m above ground; 3″ cells.",
+    )
 
 
 def main():
-    styles = ROOT / "qgis_plugin" / "styles"
+    place = observer()
+    application = maps.start()
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        dem_path = folder / "dem.tif"
-        gdal.Warp(str(dem_path), str(ROOT / "sample_data" / "jacksboro.tif"), dstSRS=UTM, xRes=CELL, yRes=CELL,
-                  resampleAlg="cubicspline", outputType=gdal.GDT_Float32, dstNodata=-9999)
-        x, y, eye_height = observer_in_utm()
-
-        result = sb.viewshed(sb.read_dem(dem_path), [(x, y)], observer_height=eye_height, target_height=TARGET_HEIGHT,
-                             max_distance=REACH, refraction=REFRACTION)
-        result.write(folder / "confidence.tif", verdict=folder / "verdict.tif")
-        gdal.ViewshedGenerate(
-            gdal.Open(str(dem_path)).GetRasterBand(1), "GTiff", str(folder / "ordinary.tif"), [], x, y, eye_height,
-            TARGET_HEIGHT, 2, 0, 255, 255, 1.0 - REFRACTION, gdal.GVM_Edge, REACH)
-        write_observer(folder / "observer.gpkg", x, y)
-
-        application = maps.start()
-        relief = maps.hillshade(dem_path, folder)
-        observer = maps.points(folder / "observer.gpkg", "Observer", "name")
-        confidence = maps.raster(folder / "confidence.tif", "Confidence of being seen", styles / "confidence.qml")
-        ordinary = maps.raster(folder / "ordinary.tif", "Ordinary viewshed", styles / "verdict.qml")
-        visible, uncertain = (100.0 * result.report[f"{word}_share"] for word in ("visible", "uncertain"))
-        maps.write_page(
-            ROOT / "docs" / "images" / "viewshed.png",
-            "",
-            [
-                maps.Panel([observer, relief], "The ground"),
-                maps.Panel([observer, confidence, relief], "Sightbound",
-                           f"Surely visible {visible:.1f} %, in doubt {uncertain:.1f} % (at 95 %)."),
-                maps.Panel([observer, ordinary, relief], "An ordinary viewshed",
-                           f"Visible {100.0 * visible_share(folder / 'ordinary.tif'):.1f} %, nothing in doubt."),
-            ],
-            [observer, confidence],
-            extent=maps.around(x, y, REACH), footer="Terrain: U.S. Geological Survey, public domain. "
-            "12 km around a fire tower on the Cumberland Mountains, Tennessee; target 2 m high.",
-        )
-        maps.stop(application)
-
-
-def visible_share(path):
-    values = gdal.Open(str(path)).ReadAsArray()
-    return float((values == 2).sum()) / float((values != 255).sum())
+        draw(folder, *run_sightbound(folder, *place), run_ordinary(folder, *place))
+    maps.stop(application)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,8 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 from osgeo import gdal
 from qgis.core import (
     QgsApplication,
+    QgsColorRampLegendNode,
+    QgsColorRampLegendNodeSettings,
     QgsCoordinateReferenceSystem,
     QgsHillshadeRenderer,
     QgsLayerTree,
@@ -35,11 +37,12 @@ from qgis.core import (
     QgsVectorLayer,
     QgsVectorLayerSimpleLabeling,
 )
-from qgis.PyQt.QtCore import QSize
+from qgis.PyQt.QtCore import QSize, QSizeF
 from qgis.PyQt.QtGui import QColor, QFont
 
 MM = QgsUnitTypes.LayoutUnit.LayoutMillimeters
 DPI = 150
+RAMP = QSizeF(7.0, 30.0)  # mm, a colour ramp in the legend
 
 gdal.UseExceptions()
 
@@ -87,15 +90,25 @@ def hillshade(dem_path, folder, name="Hillshade"):
               resampleAlg="cubicspline", outputType=gdal.GDT_Float32, dstNodata=-9999)
     layer = raster(fine, name)
     renderer = QgsHillshadeRenderer(layer.dataProvider(), 1, 315.0, 45.0)
-    renderer.setZFactor(2.0)
+    renderer.setZFactor(1.5)
     layer.setRenderer(renderer)
-    layer.brightnessFilter().setBrightness(30)
+    layer.brightnessFilter().setBrightness(20)
+    layer.setOpacity(0.7)  # pale, so that colours over it keep their meaning
     return layer
 
 
 def _cell_metres(layer):
     metres_a_unit = 111000.0 if layer.crs().isGeographic() else 1.0
     return layer.rasterUnitsPerPixelY() * metres_a_unit
+
+
+def name_ramp_ends(layer, lowest, highest):
+    """What the legend writes beside the lower and the upper end of a layer's colour ramp."""
+    shader = layer.renderer().shader().rasterShaderFunction()
+    settings = QgsColorRampLegendNodeSettings(shader.legendSettings())
+    settings.setMinimumLabel(lowest)
+    settings.setMaximumLabel(highest)
+    shader.setLegendSettings(settings)
 
 
 def points(path, name, label_field=None):
@@ -140,55 +153,52 @@ def utm_of(layer):
     return QgsCoordinateReferenceSystem.fromEpsgId((32600 if centre.y() >= 0.0 else 32700) + zone)
 
 
-def write_page(path, title, panels, legend_layers, width_mm=300.0, legend_mm=58.0, footer="", extent=None):
-    """Panels side by side, the legend at the right, a scale bar below; PNG at `path`. The map's CRS is that of the lowest
-    layer, `extent` (default: nearly all of that layer) in it."""
+def write_page(path, title, panels, legend_layers, width_mm=300.0, legend_mm=58.0, footer="", window=(0.025, 0.025, 0.975, 0.975)):
+    """Panels side by side, the legend at the right, a scale bar below; PNG at `path`. The maps show `window` of the lowest
+    layer (left, bottom, right, top as shares of its extent; the slanted edges of a reprojected raster stay outside)."""
     project = QgsProject.instance()
     ground = panels[0].layers[-1]
     crs = ground.crs()
     project.setCrs(crs)
-    if extent is None:
-        extent = ground.extent()
-        extent.scale(0.95)  # the slanted edges of a reprojected raster stay outside the frame
+    whole = ground.extent()
+    left, bottom, right, top = window
+    extent = QgsRectangle(
+        whole.xMinimum() + left * whole.width(), whole.yMinimum() + bottom * whole.height(),
+        whole.xMinimum() + right * whole.width(), whole.yMinimum() + top * whole.height())
 
-    margin, top, gap = 6.0, 24.0 if title else 14.0, 5.0
+    margin, above, gap = 6.0, 24.0 if title else 14.0, 5.0
     each = (width_mm - 2 * margin - legend_mm - gap * len(panels)) / len(panels)
     high = each * extent.height() / extent.width()
     below = 24.0
 
     layout = QgsLayout(project)
     layout.initializeDefaults()
-    layout.pageCollection().page(0).setPageSize(QgsLayoutSize(width_mm, top + high + below, MM))
+    layout.pageCollection().page(0).setPageSize(QgsLayoutSize(width_mm, above + high + below, MM))
     if title:
         _label(layout, title, margin, 4.0, width_mm - 2 * margin, 10.0, 17, bold=True)
 
     for i, panel in enumerate(panels):
-        left = margin + i * (each + gap)
-        _label(layout, panel.headline, left, top - 8.0, each, 7.0, 12, bold=True)
+        x = margin + i * (each + gap)
+        _label(layout, panel.headline, x, above - 8.0, each, 7.0, 12, bold=True)
         view = QgsLayoutItemMap(layout)
         layout.addLayoutItem(view)
-        view.attemptMove(QgsLayoutPoint(left, top, MM))
+        view.attemptMove(QgsLayoutPoint(x, above, MM))
         view.attemptResize(QgsLayoutSize(each, high, MM))
         view.setCrs(crs)
         view.setExtent(extent)
         view.setLayers(panel.layers)
         view.setFrameEnabled(True)
         if panel.caption:
-            _label(layout, panel.caption, left, top + high + 1.5, each, 12.0, 9)
+            _label(layout, panel.caption, x, above + high + 1.5, each, 12.0, 9)
         if i == 0:
-            _scale_bar(layout, view, margin, top + high + 12.0)
+            _scale_bar(layout, view, margin, above + high + 12.0)
     if footer:
-        _label(layout, footer, margin + 0.45 * width_mm, top + high + 15.0, 0.55 * width_mm - 2 * margin, 8.0, 7.5)
-    _legend(layout, legend_layers, width_mm - margin - legend_mm, top - 2.0)
+        _label(layout, footer, margin + 0.45 * width_mm, above + high + 15.0, 0.55 * width_mm - 2 * margin, 8.0, 7.5)
+    _legend(layout, legend_layers, width_mm - margin - legend_mm, above - 2.0)
 
     image = QgsLayoutExporter(layout).renderPageToImage(0, QSize(), DPI)
     if not image.save(str(path)):
         raise OSError(f"{path} cannot be written")
-
-
-def around(x, y, reach):
-    """The square that holds everything within `reach` of (x, y)."""
-    return QgsRectangle(x - reach, y - reach, x + reach, y + reach)
 
 
 def _label(layout, text, x, y, width, height, size, bold=False):
@@ -233,6 +243,8 @@ def _legend(layout, layers, x, y):
         entries = legend.model().layerOriginalLegendNodes(node)
         if isinstance(node.layer(), QgsRasterLayer) and len(entries) > 1:  # the first only names the band
             QgsMapLayerLegendUtils.setLegendNodeOrder(node, list(range(1, len(entries))))
+            if isinstance(entries[1], QgsColorRampLegendNode):
+                QgsMapLayerLegendUtils.setLegendNodeSymbolSize(node, 1, RAMP)
             legend.model().refreshLayerLegend(node)
     for style, size in (
         (QgsLegendStyle.Style.Subgroup, 10),
