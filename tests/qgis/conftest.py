@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One QGIS without a window for all tests, with the staged plugin (build/qgis_plugins) and the built core (build/python).
+"""One QGIS without a window for all tests, with the staged plugin (build/qgis_plugins) and the core (build/python).
 
 The profile is a temporary one: nothing of the user's is read or changed.
 """

@@ -124,7 +124,7 @@ def test_observer_on_nodata_names_the_feature(refused, tmp_path):
     near = str(scenes.write_observers(tmp_path / "near.gpkg", places=[scenes.FIRST]))
     assert says(refused(**lines, OBSERVERS=near, TARGETS=layer), "TARGETS", "feature 2 of TARGETS", "nodata")
     point = f"{scenes.SECOND[0]},{scenes.SECOND[1]} [EPSG:{scenes.UTM}]"
-    assert says(refused(INPUT=dem, OBSERVER=point), "OBSERVER ", "nodata")
+    assert says(refused(INPUT=dem, OBSERVER=point), "OBSERVER:", "nodata")
 
 
 def test_feature_without_a_point(refused, tmp_path):

@@ -29,8 +29,8 @@ def left_in(folder, *known):
 def test_viewshed_leaves_nothing(run, large_dem, many, tmp_path, percent):
     log = scenes.Log(cancel_at=percent)
     out = {name: str(tmp_path / f"{name}.tif") for name in ("OUTPUT", "OUTPUT_VERDICT")}
-    results = run("confidenceviewshed", feedback=log, INPUT=large_dem, OBSERVERS=many, OUTPUT_FOLDER=str(tmp_path / "each"),
-                  OUTPUT_OBSERVERS=str(tmp_path / "table.gpkg"), **out)  # fmt: skip
+    out |= {"OUTPUT_FOLDER": str(tmp_path / "each"), "OUTPUT_OBSERVERS": str(tmp_path / "table.gpkg")}
+    results = run("confidenceviewshed", feedback=log, INPUT=large_dem, OBSERVERS=many, **out)
     assert log.isCanceled() and results == {}
     assert log.fractions[-1] < 100.0 and any("Cancelled" in text for text in log.infos)
     assert left_in(tmp_path, "large.tif", "many.gpkg") in ([], ["each"])

@@ -8,6 +8,9 @@ import pytest
 import scenes
 from qgis.core import QgsProcessing, QgsVectorLayer
 
+# With these sigma is that of the terrain types alone, and reaches its largest value within each cell.
+GIVEN = {"VERTICAL_ACCURACY": 0.0, "GEOLOGIC_VARIATION": 1.0}
+
 
 @pytest.fixture
 def used(run, dem, tmp_path):
@@ -71,7 +74,7 @@ def test_rasters(used, tmp_path):
 ])  # fmt: skip
 def test_terrain_types_with_a_table(used, tmp_path, table):
     types = scenes.write_terrain_types(tmp_path / "types.gpkg")
-    used(VERTICAL_ACCURACY=0.0, TERRAIN_TYPES=str(types), TERRAIN_FIELD="kind", TERRAIN_TABLE=table)
+    used(**GIVEN, TERRAIN_TYPES=str(types), TERRAIN_FIELD="kind", TERRAIN_TABLE=table)
     sigma = sigma_of(tmp_path)
     assert sigma[:, :18] == pytest.approx(0.5 / 1.96, abs=0.01) and sigma[:, 22:] == pytest.approx(
         6 / 1.96, abs=0.01
@@ -84,12 +87,7 @@ def test_terrain_types_with_a_table(used, tmp_path, table):
 def test_terrain_table_from_a_file(used, tmp_path, name, text):
     (tmp_path / name).write_text(text)
     types = scenes.write_terrain_types(tmp_path / "types.gpkg")
-    used(
-        VERTICAL_ACCURACY=0.0,
-        TERRAIN_TYPES=str(types),
-        TERRAIN_FIELD="kind",
-        TERRAIN_TABLE=str(tmp_path / name),
-    )
+    used(**GIVEN, TERRAIN_TYPES=str(types), TERRAIN_FIELD="kind", TERRAIN_TABLE=str(tmp_path / name))
     assert sigma_of(tmp_path)[:, 22:] == pytest.approx(6 / 1.96, abs=0.01)
 
 

@@ -51,8 +51,9 @@ def test_estimate_once_and_use_it_in_a_model(provider, dem, observers, tmp_path)
     """errorsurfaces hands its error model file to confidenceviewshed; only what must be said is said."""
     recipe = str(tmp_path / "model.json")
     model = QgsProcessingModelAlgorithm("Two steps", "tests", "tests")
-    first = child("errorsurfaces", "surfaces", INPUT=Source.fromStaticValue(dem), CONFIDENCE=Source.fromStaticValue(0.95),
-                  VERTICAL_ACCURACY=Source.fromStaticValue(0.7), GEOLOGIC_VARIATION=Source.fromStaticValue(0.0),
+    first = child("errorsurfaces", "surfaces", INPUT=Source.fromStaticValue(dem),
+                  CONFIDENCE=Source.fromStaticValue(0.95), VERTICAL_ACCURACY=Source.fromStaticValue(0.7),
+                  GEOLOGIC_VARIATION=Source.fromStaticValue(0.0),
                   OUTPUT_MODEL=Source.fromStaticValue(recipe))  # fmt: skip
     second = child(
         "confidenceviewshed",

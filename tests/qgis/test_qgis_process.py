@@ -43,6 +43,18 @@ def qgis_process(tmp_path):
     return run_command
 
 
+@pytest.fixture
+def bare_plugins(tmp_path):
+    """The plugin as the zip holds it: without the link to the core that the build puts beside it."""
+    plugins = tmp_path / "plugins"
+    shutil.copytree(
+        PLUGINS / "sightbound_qgis",
+        plugins / "sightbound_qgis",
+        ignore=lambda _, names: {"sightbound"} & {*names},
+    )
+    return plugins
+
+
 def arguments(dem, observers, tmp_path):
     return f"INPUT={dem}", f"OBSERVERS={observers}", f"OUTPUT={tmp_path / 'p.tif'}"
 
@@ -58,8 +70,9 @@ def test_list_and_help(qgis_process):
 def test_viewshed(qgis_process, dem, observers, tmp_path):
     done = qgis_process(
         "--json", "run", "sightbound:confidenceviewshed", "--", *arguments(dem, observers, tmp_path),
-        "OBSERVER_HEIGHT_FIELD=eye", "TARGET_HEIGHT=2", "MAX_DISTANCE=150", "VERTICAL_ACCURACY=1.5", "VERTICAL_MEASURE=LE95",
-        "COMBINE=worst", f"OUTPUT_VERDICT={tmp_path / 'v.tif'}", f"OUTPUT_OBSERVERS={tmp_path / 'o.gpkg'}",
+        "OBSERVER_HEIGHT_FIELD=eye", "TARGET_HEIGHT=2", "MAX_DISTANCE=150", "VERTICAL_ACCURACY=1.5",
+        "VERTICAL_MEASURE=LE95", "COMBINE=worst", f"OUTPUT_VERDICT={tmp_path / 'v.tif'}",
+        f"OUTPUT_OBSERVERS={tmp_path / 'o.gpkg'}",
         f"OUTPUT_FOLDER={tmp_path / 'each'}", "ID_FIELD=name",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr + done.stdout
@@ -95,37 +108,37 @@ def test_bad_input_fails_and_says_why(qgis_process, dem, tmp_path):
     assert not (tmp_path / "p.tif").exists()
 
 
-def test_without_the_core_algorithms_are_listed_and_say_how_to_install_it(
-    qgis_process, dem, observers, tmp_path
+def test_without_the_core_the_message_says_how_to_install_it(
+    qgis_process, bare_plugins, dem, observers, tmp_path
 ):
-    nowhere = tmp_path / "nowhere"
-    assert "sightbound:errorsurfaces" in qgis_process("list", core=nowhere).stdout
+    nothing = {"core": tmp_path / "nowhere", "plugins": bare_plugins}
+    assert "sightbound:errorsurfaces" in qgis_process("list", **nothing).stdout
     run_it = ("run", "sightbound:confidenceviewshed", "--", *arguments(dem, observers, tmp_path))
-    done = qgis_process(*run_it, core=nowhere)
+    done = qgis_process(*run_it, **nothing)
     assert done.returncode != 0
     assert "sudo apt install ./sightbound-core_*.deb" in done.stdout + done.stderr
     assert "cmake --install build" in done.stdout + done.stderr
 
 
-def test_core_in_the_plugins_own_folder_is_used(qgis_process, dem, observers, tmp_path):
-    plugins = tmp_path / "plugins"
-    shutil.copytree(PLUGINS / "sightbound_qgis", plugins / "sightbound_qgis")
-    shutil.copytree(BUILD / "python" / "sightbound", plugins / "sightbound_qgis" / "sightbound")
+def test_core_in_the_plugins_own_folder_is_used(qgis_process, bare_plugins, dem, observers, tmp_path):
+    shutil.copytree(BUILD / "python" / "sightbound", bare_plugins / "sightbound_qgis" / "sightbound")
     run_it = ("run", "sightbound:confidenceviewshed", "--", *arguments(dem, observers, tmp_path))
-    done = qgis_process(*run_it, plugins=plugins, core=tmp_path / "nowhere")
+    done = qgis_process(*run_it, plugins=bare_plugins, core=tmp_path / "nowhere")
     assert done.returncode == 0 and (tmp_path / "p.tif").is_file(), done.stderr + done.stdout
 
 
 @pytest.mark.parametrize(
     "version, gdal, words", [("9.9.0", None, ("9.9.0", "0.1")), ("0.1.0", "9.9.9", ("GDAL 9.9.9",))]
 )
-def test_core_that_does_not_fit_is_refused(qgis_process, dem, observers, tmp_path, version, gdal, words):
+def test_core_that_does_not_fit_is_refused(
+    qgis_process, bare_plugins, dem, observers, tmp_path, version, gdal, words
+):
     other = tmp_path / "other" / "sightbound"
     other.mkdir(parents=True)
     answer = f"return {gdal!r}" if gdal else "from osgeo import gdal; return gdal.__version__"
     (other / "__init__.py").write_text(f"__version__ = {version!r}\n\n\ndef gdal_version():\n    {answer}\n")
     run_it = ("run", "sightbound:confidenceviewshed", "--", *arguments(dem, observers, tmp_path))
-    done = qgis_process(*run_it, core=other.parent)
+    done = qgis_process(*run_it, plugins=bare_plugins, core=other.parent)
     said = done.stdout + done.stderr
     assert done.returncode != 0 and all(word in said for word in words) and "apt install" in said
 
