@@ -24,9 +24,10 @@ qgis_process=$(command -v qgis_process.bin || command -v qgis_process) \
 step "running sightbound:confidenceviewshed in QGIS"
 quiet "$qgis_process" plugins enable sightbound_qgis
 rm -f "$out"/confidence.* "$out"/verdict.* "$out"/observers.* "$out"/map.png "$out"/result.json
+cp sample_data/observers.gpkg "$scratch" # QGIS writes into a GeoPackage even when it only reads
 if ! "$qgis_process" --json run sightbound:confidenceviewshed -- \
   INPUT="$PWD/sample_data/jacksboro.tif" \
-  OBSERVERS="$PWD/sample_data/observers.gpkg" \
+  OBSERVERS="$scratch/observers.gpkg" \
   OBSERVER_HEIGHT_FIELD=eye_height \
   TARGET_HEIGHT=2 \
   MAX_DISTANCE=15000 \

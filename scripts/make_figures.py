@@ -9,6 +9,7 @@ of its middle latitude, where cells in degrees stay cells and nothing is resampl
 """
 
 import math
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -64,7 +65,8 @@ def run_ordinary(folder, lon, lat, eye_height):
 def draw(folder, shares, verdict, seen):
     styles = ROOT / "qgis_plugin" / "styles"
     relief = maps.hillshade(DEM, folder)
-    place = maps.points(OBSERVERS, "Observer", "name")
+    copy = shutil.copy(OBSERVERS, folder)  # QGIS writes into a GeoPackage even when it only reads
+    place = maps.points(copy, "Observer", "name")
     place.setSubsetString(f"name = '{OBSERVER}'")
     confidence = maps.raster(folder / "confidence.tif", "Confidence of being seen", styles / "confidence.qml")
     maps.name_ramp_ends(confidence, "0  surely hidden", "1  surely visible")
