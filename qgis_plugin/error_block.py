@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads the error block: in the main thread what was said, in the worker the core's ErrorModel of it."""
 
+import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -82,8 +83,8 @@ def check_error_block(algorithm, parameters, context):
 
 
 def log_error_model(feedback, text):
-    """Writes to the log which error model was used."""
-    feedback.pushInfo(tr("Error model used: {}").format(text))
+    """Writes to the log which error model was used, on one line."""
+    feedback.pushInfo(tr("Error model used: {}").format(json.dumps(json.loads(text))))
 
 
 def _from_file(algorithm, parameters, context, feedback):

@@ -2,20 +2,25 @@
 """Sight lines as drawings: one HTML page with an inline SVG for each profile.
 
 A drawing shows the terrain, the band in which it lies at the confidence asked for, the line of sight (which sags with
-the Earth's curve, so that terrain keeps its heights), and the critical place.
+the Earth's curve, so that terrain keeps its heights), and the critical place, whose surroundings are drawn once more
+beside it.
 """
 
 import html
 import math
 from pathlib import Path
 from statistics import NormalDist
+from typing import NamedTuple
 
 from .line_outputs import critical_index
 from .text import tr
 
 MOST = 50  # drawings on a page
 _WIDTH, _HEIGHT = 860, 300
-_LEFT, _RIGHT, _TOP, _BOTTOM = 64, 16, 16, 40
+_WHOLE, _DETAIL = (60, 570), (650, 850)  # left and right edge of the two parts
+_TOP, _BOTTOM = 16, 260
+_DETAIL_SHARE = 0.02  # of the length, to either side of the critical place
+_DETAIL_PLACES = 12  # judged places to either side that the detail shows at least
 _STYLE = Path(__file__).parent / "styles" / "profiles.css"
 
 
@@ -62,66 +67,92 @@ def _section(line, confidence):
 
 
 def _drawing(line, confidence):
+    """The whole profile, and beside it the surroundings of the critical place, where the band can be seen."""
     z = NormalDist().inv_cdf((1.0 + confidence) / 2.0)
+    profile = line.sight.profile
     places = [
-        (float(d), float(g), float(s), float(h))
-        for d, g, s, h in zip(*(line.sight.profile[name] for name in ("distance", "ground", "sigma", "line")))
-    ]
-    known = [place for place in places if math.isfinite(place[1])]
-    if not known:
-        return f"<p>{tr('Nothing lies between the two ends.')}</p>"
-    low = min(min(g - z * s, h) for _, g, s, h in known)
-    high = max(max(g + z * s, h) for _, g, s, h in known)
-    margin = 0.06 * max(high - low, 1.0)
-    frame = _Frame(line.sight.distance, low - margin, high + margin)
-    parts = [f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' role='img'>", frame.axes()]
-    for stretch in _stretches(places):
-        stretch = _thinned(stretch, frame)
-        ground = [frame.at(d, g) for d, g, _, _ in stretch]
-        upper = [frame.at(d, g + z * s) for d, g, s, _ in stretch]
-        lower = [frame.at(d, g - z * s) for d, g, s, _ in stretch]
-        bottom = [frame.at(stretch[-1][0], frame.low), frame.at(stretch[0][0], frame.low)]
-        parts.append(_shape("polygon", "terrain", ground + bottom))
-        parts.append(_shape("polygon", "band", upper + lower[::-1]))
-        parts.append(_shape("polyline", "ground", ground))
-    parts.append(
-        _shape(
-            "polyline", f"sight {line.verdict}", [frame.at(d, h) for d, _, _, h in _thinned(places, frame)]
+        _Place(float(distance), float(ground), z * float(sigma), float(sight))
+        for distance, ground, sigma, sight in zip(
+            profile["distance"], profile["ground"], profile["sigma"], profile["line"]
         )
-    )
-    if math.isfinite(line.sight.critical_distance):
-        d, g, _, h = places[critical_index(line.sight)]
-        x, y = frame.at(d, g if math.isfinite(g) else h)
-        parts.append(f"<circle class='critical' cx='{x:.1f}' cy='{y:.1f}' r='5'/>")
+    ]
+    if not any(math.isfinite(place.ground) for place in places):
+        return f"<p>{tr('Nothing is known between the two ends.')}</p>"
+    critical = critical_index(line.sight) if math.isfinite(line.sight.critical_distance) else None
+    parts = [f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' role='img'>"]
+    parts += _part(places, critical, _WHOLE, line.verdict)
+    if critical is not None:
+        parts += _part(*_around(places, critical), _DETAIL, line.verdict)
     return "".join(parts) + "</svg>"
 
 
-class _Frame:
-    """Metres to drawing units, and the axes."""
+class _Place(NamedTuple):
+    distance: float
+    ground: float  # NaN where unknown
+    band: float  # half its width
+    sight: float
 
-    def __init__(self, length, low, high):
-        self.length, self.low, self.high = max(length, 1e-6), low, high
+
+def _around(places, critical):
+    """The places near the critical one, and its index among them."""
+    reach = _DETAIL_SHARE * places[-1].distance
+    first, last = max(0, critical - _DETAIL_PLACES), min(len(places), critical + _DETAIL_PLACES + 1)
+    while first > 0 and places[critical].distance - places[first - 1].distance < reach:
+        first -= 1
+    while last < len(places) and places[last].distance - places[critical].distance < reach:
+        last += 1
+    return places[first:last], critical - first
+
+
+def _part(places, critical, edges, verdict):
+    known = [place for place in places if math.isfinite(place.ground)] or places
+    low = min(min(place.ground - place.band, place.sight) for place in known)
+    high = max(max(place.ground + place.band, place.sight) for place in known)
+    margin = 0.06 * max(high - low, 1.0)
+    frame = _Frame(edges, places[0].distance, places[-1].distance, low - margin, high + margin)
+    parts = [frame.axes()]
+    for stretch in _stretches(places):
+        stretch = _thinned(stretch, frame)
+        ground = [frame.at(place.distance, place.ground) for place in stretch]
+        upper = [frame.at(place.distance, place.ground + place.band) for place in stretch]
+        lower = [frame.at(place.distance, place.ground - place.band) for place in stretch]
+        bottom = [frame.at(stretch[-1].distance, frame.low), frame.at(stretch[0].distance, frame.low)]
+        parts.append(_shape("polygon", "terrain", ground + bottom))
+        parts.append(_shape("polygon", "band", upper + lower[::-1]))
+        parts.append(_shape("polyline", "ground", ground))
+    sight = [frame.at(place.distance, place.sight) for place in _thinned(places, frame)]
+    parts.append(_shape("polyline", f"sight {verdict}", sight))
+    if critical is not None:
+        place = places[critical]
+        x, y = frame.at(place.distance, place.ground if math.isfinite(place.ground) else place.sight)
+        parts.append(f"<circle class='critical' cx='{x:.1f}' cy='{y:.1f}' r='5'/>")
+    return parts
+
+
+class _Frame:
+    """Metres to drawing units between two edges, and the axes."""
+
+    def __init__(self, edges, start, end, low, high):
+        self.left, self.right = edges
+        self.start, self.end = start, max(end, start + 1e-6)
+        self.low, self.high = low, high
 
     def at(self, distance, height):
-        x = _LEFT + distance / self.length * (_WIDTH - _LEFT - _RIGHT)
-        y = _TOP + (self.high - height) / (self.high - self.low) * (_HEIGHT - _TOP - _BOTTOM)
+        x = self.left + (distance - self.start) / (self.end - self.start) * (self.right - self.left)
+        y = _TOP + (self.high - height) / (self.high - self.low) * (_BOTTOM - _TOP)
         return x, y
 
     def axes(self):
         parts = []
         for height in _ticks(self.low, self.high, 5):
-            x, y = self.at(0.0, height)
-            parts.append(
-                f"<line class='grid' x1='{_LEFT}' x2='{_WIDTH - _RIGHT}' y1='{y:.1f}' y2='{y:.1f}'/>"
-            )
-            parts.append(f"<text x='{_LEFT - 8}' y='{y + 4:.1f}' text-anchor='end'>{height:g} m</text>")
-        kilometres = self.length >= 5000.0
-        for distance in _ticks(0.0, self.length, 8):
+            _, y = self.at(self.start, height)
+            parts.append(f"<line class='grid' x1='{self.left}' x2='{self.right}' y1='{y:.1f}' y2='{y:.1f}'/>")
+            parts.append(f"<text x='{self.left - 8}' y='{y + 4:.1f}' text-anchor='end'>{height:g} m</text>")
+        kilometres = self.end >= 5000.0
+        for distance in _ticks(self.start, self.end, (self.right - self.left) // 60):
             x, _ = self.at(distance, self.low)
             label = f"{distance / 1000.0:g} km" if kilometres else f"{distance:g} m"
-            parts.append(
-                f"<text x='{x:.1f}' y='{_HEIGHT - _BOTTOM + 18}' text-anchor='middle'>{label}</text>"
-            )
+            parts.append(f"<text x='{x:.1f}' y='{_BOTTOM + 18}' text-anchor='middle'>{label}</text>")
         return "".join(parts)
 
 
@@ -138,28 +169,23 @@ def _stretches(places):
     """The profile without its holes."""
     runs, run = [], []
     for place in places:
-        if math.isfinite(place[1]):
+        if math.isfinite(place.ground):
             run.append(place)
         elif run:
             runs.append(run)
             run = []
-    return [one for one in runs + [run] if one]
+    return [one for one in [*runs, run] if one]
 
 
 def _thinned(places, frame):
-    """At most four places for each drawing unit of width: those that are lowest and highest, first and last."""
+    """At most four places for each drawing unit of width: the first and the last, the lowest and the highest."""
     columns = {}
     for place in places:
-        columns.setdefault(int(frame.at(place[0], 0.0)[0]), []).append(place)
+        columns.setdefault(int(frame.at(place.distance, 0.0)[0]), []).append(place)
     kept = []
     for column in columns.values():
-        best = {
-            column[0],
-            column[-1],
-            min(column, key=lambda one: one[1]),
-            max(column, key=lambda one: one[1]),
-        }
-        kept += sorted(best)
+        by_height = sorted(column, key=lambda place: place.ground)
+        kept += sorted({column[0], column[-1], by_height[0], by_height[-1]})
     return kept
 
 

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from qgis.core import (
     QgsProcessingLayerPostProcessorInterface,
-    QgsRasterBandStats,
     QgsRasterLayer,
     QgsSingleBandPseudoColorRenderer,
 )
@@ -18,7 +17,7 @@ def style_path(style):
 
 
 class StyleOnLoad(QgsProcessingLayerPostProcessorInterface):
-    """Gives a loaded layer a style. `stretch` fits the colour ramp to the layer's own least and largest value.
+    """Gives a loaded layer a style. `stretch` fits the colour ramp to that share of the layer's values, 0 leaves it.
 
     One instance for each layer: the context deletes it. It does not keep the Python half alive, so this class does.
     """
@@ -36,20 +35,21 @@ class StyleOnLoad(QgsProcessingLayerPostProcessorInterface):
         if not loaded:
             feedback.pushWarning(message)
         if self.stretch and isinstance(layer, QgsRasterLayer):
-            stretch_ramp(layer)
+            stretch_ramp(layer, self.stretch)
         layer.triggerRepaint()
 
 
-def stretch_ramp(layer):
-    """Moves the stops of the layer's colour ramp, in proportion, to span the values that the layer holds."""
+def stretch_ramp(layer, share):
+    """Moves the stops of the layer's colour ramp, in proportion, to span the values that the layer holds.
+
+    `share` of the values are spanned; the few that lie far above have the last colour.
+    """
     renderer = layer.renderer()
     if not isinstance(renderer, QgsSingleBandPseudoColorRenderer):
         return
-    wanted = QgsRasterBandStats.Stats.Min | QgsRasterBandStats.Stats.Max
-    found = layer.dataProvider().bandStatistics(1, wanted, layer.extent(), 250000)
+    least, largest = layer.dataProvider().cumulativeCut(1, 0.0, share, layer.extent(), 250000)
     shader = renderer.shader().rasterShaderFunction()
     low, high = shader.minimumValue(), shader.maximumValue()
-    least, largest = found.minimumValue, found.maximumValue
     if not largest > least or not high > low:
         return
     items = shader.colorRampItemList()
@@ -63,7 +63,7 @@ def stretch_ramp(layer):
     renderer.setClassificationMax(largest)
 
 
-def style_when_loaded(context, output, style, stretch=False):
+def style_when_loaded(context, output, style, stretch=0.0):
     """Asks QGIS to style `output` (a path or a sink's id) if it will be loaded."""
     if context.willLoadLayerOnCompletion(output):
         details = context.layerToLoadOnCompletionDetails(output)

@@ -25,13 +25,14 @@ from ..text import tr
 from ..values import given, word
 from .base import SightboundAlgorithm
 
-# output, label, argument of result.write, style, fit the ramp to the values, optional, made unless asked not to
+# output, label, argument of result.write, style, share of the values that the ramp spans (0: as the style says),
+# optional, made unless asked not to
 RASTERS = (
-    ("OUTPUT", "Confidence", "confidence", "confidence", False, False, True),
-    ("OUTPUT_VERDICT", "Verdict", "verdict", "verdict", False, True, True),
-    ("OUTPUT_COUNT", "Number of observers that surely see", "count", "count", True, True, False),
-    ("OUTPUT_HEIGHT", "Lowest visible height, certain", "height", "height", True, True, False),
-    ("OUTPUT_HEIGHT_LIKELY", "Lowest visible height, likely", "likely_height", "height", True, True, False),
+    ("OUTPUT", "Confidence", "confidence", "confidence", 0.0, False, True),
+    ("OUTPUT_VERDICT", "Verdict", "verdict", "verdict", 0.0, True, True),
+    ("OUTPUT_COUNT", "Number of observers that surely see", "count", "count", 1.0, True, False),
+    ("OUTPUT_HEIGHT", "Lowest visible height, certain", "height", "height", 0.98, True, False),
+    ("OUTPUT_HEIGHT_LIKELY", "Lowest visible height, likely", "likely_height", "height", 0.98, True, False),
 )
 NUMBERS = (
     ("AREA_VISIBLE", "Area visible (m²)", "visible_m2"),

@@ -96,7 +96,7 @@ class ErrorSurfaces(SightboundAlgorithm):
                 progress=Progress(feedback, 90.0, 100.0),
             )
         for name, _, _, style in wanted:
-            style_when_loaded(context, results[name], style, stretch=True)
+            style_when_loaded(context, results[name], style, stretch=0.98)
         results["ERROR_MODEL_USED"] = used
         if given(parameters, "OUTPUT_MODEL"):
             results["OUTPUT_MODEL"] = self.parameterAsFileOutput(parameters, "OUTPUT_MODEL", context)

@@ -7,7 +7,7 @@
           <colorramp type="gradient" name="[source]">
             <Option type="Map">
               <Option name="color1" type="QString" value="68,1,84,0"/>
-              <Option name="color2" type="QString" value="68,2,86,190"/>
+              <Option name="color2" type="QString" value="253,231,37,190"/>
               <Option name="discrete" type="QString" value="0"/>
               <Option name="rampType" type="QString" value="gradient"/>
               <Option name="stops" type="QString" value="0.02;70,8,92,190:0.25;59,82,139,190:0.5;33,145,140,190:0.75;94,201,98,190"/>
@@ -18,7 +18,7 @@
             <item value="0.25" label="0.25" color="#3b528b" alpha="190"/>
             <item value="0.5" label="0.5" color="#21918c" alpha="190"/>
             <item value="0.75" label="0.75" color="#5ec962" alpha="190"/>
-            <item value="1" label="1" color="#440256" alpha="190"/>
+            <item value="1" label="1" color="#fde725" alpha="190"/>
         </colorrampshader>
       </rastershader>
     </rasterrenderer>

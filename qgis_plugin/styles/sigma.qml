@@ -7,7 +7,7 @@
           <colorramp type="gradient" name="[source]">
             <Option type="Map">
               <Option name="color1" type="QString" value="0,34,78,220"/>
-              <Option name="color2" type="QString" value="0,35,79,220"/>
+              <Option name="color2" type="QString" value="254,232,56,220"/>
               <Option name="discrete" type="QString" value="0"/>
               <Option name="rampType" type="QString" value="gradient"/>
               <Option name="stops" type="QString" value="0.25;67,78,108,220:0.5;125,124,120,220:0.75;188,174,108,220"/>
@@ -17,7 +17,7 @@
             <item value="0.25" label="0.25" color="#434e6c" alpha="220"/>
             <item value="0.5" label="0.5" color="#7d7c78" alpha="220"/>
             <item value="0.75" label="0.75" color="#bcae6c" alpha="220"/>
-            <item value="1" label="1" color="#00234f" alpha="220"/>
+            <item value="1" label="1" color="#fee838" alpha="220"/>
         </colorrampshader>
       </rastershader>
     </rasterrenderer>

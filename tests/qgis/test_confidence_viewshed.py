@@ -213,7 +213,7 @@ def test_error_model_is_logged_and_in_the_metadata(run, dem, observers, log):
                   VERTICAL_MEASURE="LE90", GEOLOGIC_VARIATION=0.0, OUTPUT=QgsProcessing.TEMPORARY_OUTPUT)  # fmt: skip
     used = json.loads(results["ERROR_MODEL_USED"])
     assert used["vertical_rmse"] == pytest.approx(1.0, abs=1e-4) and used["geologic_variation"] == 0.0
-    assert any(results["ERROR_MODEL_USED"] in text for text in log.infos)
+    assert any(json.dumps(used) in text for text in log.infos)
     _, dataset = scenes.read(results["OUTPUT"])
     kept = {key: value for key, value in dataset.GetMetadata().items() if key.startswith("SIGHTBOUND_")}
     assert json.loads(kept["SIGHTBOUND_ERROR_MODEL"]) == used

@@ -41,7 +41,7 @@ def test_all_pairs(run, dem, observers, targets, tmp_path):
     counts = [results[f"COUNT_{word}"] for word in ("VISIBLE", "UNCERTAIN", "HIDDEN")]
     assert sum(counts) == 6
     text = page.read_text(encoding="utf-8")
-    assert text.count("<svg") == 6 and text.count("class='critical'") == 6 and "tower a/b → hut" in text
+    assert text.count("<svg") == 6 and text.count("class='critical'") == 12 and "tower a/b → hut" in text
     assert "left out" not in text and html.escape(results["ERROR_MODEL_USED"]) in text
 
 
