@@ -16,6 +16,8 @@ namespace sightbound {
 namespace {
 constexpr int kMaxThreads = 1024;
 
+thread_local int innermost_count = 0;  // of the calling thread's Workers; 0 = it has none
+
 int thread_count(int threads) {
   if (threads < 0 || threads > kMaxThreads) {
     throw InvalidInput("threads is " + std::to_string(threads) + "; give 0 (all cores) to " +
@@ -32,9 +34,14 @@ struct Workers::Arena {
   tbb::task_arena arena;
 };
 
-Workers::Workers(int threads) : count_(thread_count(threads)), arena_(std::make_unique<Arena>(count_)) {}
+Workers::Workers(int threads)
+    : count_(thread_count(threads)), count_outside_(innermost_count), arena_(std::make_unique<Arena>(count_)) {
+  innermost_count = count_;
+}
 
-Workers::~Workers() = default;
+Workers::~Workers() { innermost_count = count_outside_; }
+
+int Workers::count_here() { return innermost_count > 0 ? innermost_count : thread_count(0); }
 
 void Workers::for_each(std::size_t n, const std::function<void(std::size_t)>& f) const {
   if (count_ == 1) {

@@ -373,11 +373,11 @@ double ObserverFrame::interpolation_error(const Window& reach) const {
       const double distance = target.distance();
       const double major0 = transposed ? row_ : col_, span = (transposed ? row : col) - major0;
       for (const double xi : {0.03, 0.21, 0.5, 0.77, 0.96}) {
-        Jet j{};
+        Jet found{};
         const double minor =
-            minor_towards(major0 + xi * span, path.minor(xi), transposed, target.east / distance, target.north / distance, &j);
+            minor_towards(major0 + xi * span, path.minor(xi), transposed, target.east / distance, target.north / distance, &found);
         error = std::max(error, std::abs(minor - path.minor(xi)));
-        const double share = (j.east * target.east + j.north * target.north) / (distance * distance);
+        const double share = (found.east * target.east + found.north * target.north) / (distance * distance);
         error = std::max(error, std::abs(share - path.share(xi)) * std::abs(span));
       }
     }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "earth/georeference.h"
@@ -32,6 +33,12 @@ struct NodePolynomial {
   int terms = 0;
   std::array<double, kMaxPathTerms> c{};
 
+  // No larger value anywhere in [0, 1].
+  double size() const {
+    double sum = 0;
+    for (int i = 0; i < terms; ++i) sum += std::abs(c[static_cast<std::size_t>(i)]);
+    return sum;
+  }
   double operator()(double x) const {
     double value = 0;
     for (int i = terms - 1; i >= 0; --i) value = value * x + c[static_cast<std::size_t>(i)];
@@ -48,6 +55,11 @@ class GeodesicPath {
   double share(double xi) const { return xi + xi * (1 - xi) * stretch_(xi); }
   // No larger second derivative of minor(xi) anywhere on the path.
   double bow_bound() const;
+  // The minor coordinate on the straight line between the ends; the path is never farther from it than largest_bow(), and
+  // share(xi) never farther from xi than largest_stretch().
+  double chord(double xi) const { return minor0_ + xi * minor_span_; }
+  double largest_bow() const { return bow_.size() / 4; }
+  double largest_stretch() const { return stretch_.size() / 4; }
 
  private:
   friend class ObserverFrame;

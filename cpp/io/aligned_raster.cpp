@@ -12,6 +12,7 @@
 #include <ogr_spatialref.h>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "io/band_reader.h"
 #include "io/crs.h"
 #include "io/error_rasters.h"
@@ -114,6 +115,7 @@ Grid<float> warp(const Band& band, const std::string& file_crs, const DemSource&
   const std::unique_ptr<void, TransformerDelete> transformer(
       GDALCreateApproxTransformer(GDALGenImgProjTransform, exact.get(), kLargestShift));
 
+  const std::string threads = std::to_string(Workers::count_here());
   gdal::ProgressBridge bridge(progress);
   const std::unique_ptr<GDALWarpOptions, WarpOptionsDelete> options(GDALCreateWarpOptions());
   options->hSrcDS = band.dataset;
@@ -131,7 +133,7 @@ Grid<float> warp(const Band& band, const std::string& file_crs, const DemSource&
   if (band.decoder.nodata) GDALWarpInitSrcNoDataReal(options.get(), *band.decoder.nodata);
   GDALWarpInitDstNoDataReal(options.get(), std::numeric_limits<double>::quiet_NaN());
   options->papszWarpOptions = CSLSetNameValue(options->papszWarpOptions, "INIT_DEST", "NO_DATA");
-  options->papszWarpOptions = CSLSetNameValue(options->papszWarpOptions, "NUM_THREADS", "ALL_CPUS");
+  options->papszWarpOptions = CSLSetNameValue(options->papszWarpOptions, "NUM_THREADS", threads.c_str());
   options->pfnTransformer = GDALApproxTransform;
   options->pTransformerArg = transformer.get();
   options->pfnProgress = gdal::ProgressBridge::call;

@@ -17,10 +17,10 @@
 #include <vector>
 
 #include <cpl_conv.h>
-#include <cpl_multiproc.h>
 #include <cpl_string.h>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace sightbound {
 
@@ -44,9 +44,10 @@ bool is_mosaic_of_geotiffs(GDALDataset& dataset) {
   return files.Count() > 1;
 }
 
+// GDAL's own limit holds too.
 int reading_threads() {
   const int asked = std::atoi(CPLGetConfigOption("GDAL_NUM_THREADS", "0"));  // "ALL_CPUS" is 0 here
-  return asked > 0 ? asked : CPLGetNumCPUs();
+  return asked > 0 ? std::min(asked, Workers::count_here()) : Workers::count_here();
 }
 
 std::optional<double> nodata_of(GDALRasterBand& band) {

@@ -24,6 +24,14 @@ void require(bool right, const std::string& name, const char* field, double valu
   if (!right) throw InvalidInput(name + ": " + field + " is " + number(value) + "; it must be " + allowed + ".");
 }
 
+// In coordinates from the base sample.
+Georeference from_base(const Georeference& georeference, const GridPlace& place) {
+  return georeference.of_window({place.base_col, place.base_row, 1, 1});
+}
+Window from_base(const Window& w, const GridPlace& place) {
+  return {w.col - place.base_col, w.row - place.base_row, w.cols, w.rows};
+}
+
 }  // namespace
 
 std::string name_of(const Observer& observer, std::size_t index) {
@@ -101,9 +109,12 @@ Window reach_of(const DemSource& source, const Georeference& georeference, const
 }
 
 ObserverFrame frame_of(const Georeference& georeference, const GridPlace& place, const Window& reach) {
-  const Georeference moved = georeference.of_window({place.base_col, place.base_row, 1, 1});
-  const Window relative{reach.col - place.base_col, reach.row - place.base_row, reach.cols, reach.rows};
-  return ObserverFrame(moved, place.col, place.row, relative);
+  return ObserverFrame(from_base(georeference, place), place.col, place.row, from_base(reach, place));
+}
+
+ObserverFrames frames_of(const DemSource& source, const Georeference& georeference, const GridPlace& place, const Window& reach) {
+  return ObserverFrames(from_base(georeference, place), place.col, place.row, from_base(source.window(), place),
+                        from_base(reach, place));
 }
 
 Window lines_window(const DemSource& source, const ObserverFrame& frame, const GridPlace& place, const Window& targets) {

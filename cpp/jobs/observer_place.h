@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "earth/observer_frame.h"
+#include "earth/observer_frames.h"
 #include "jobs/viewshed_job.h"
 
 namespace sightbound {
@@ -34,6 +34,8 @@ Window reach_of(const DemSource&, const Georeference&, const GridPlace&, double 
 
 // The observer's frame over `reach` (whole raster), in coordinates from his base sample: a function of place and reach.
 ObserverFrame frame_of(const Georeference&, const GridPlace&, const Window& reach);
+// The same as rings, a function of place and raster alone as far as they reach.
+ObserverFrames frames_of(const DemSource&, const Georeference&, const GridPlace&, const Window& reach);
 
 // What must be in memory for lines from the observer to anywhere in `targets`: both, and room for lines that bow.
 Window lines_window(const DemSource&, const ObserverFrame&, const GridPlace&, const Window& targets);

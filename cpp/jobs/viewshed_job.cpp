@@ -19,6 +19,8 @@ namespace sightbound {
 
 namespace {
 
+constexpr double kOnTheLimit = 1e-6;  // cells
+
 // One observer on his way through the job. Windows are in the whole raster.
 struct Post {
   const Observer& observer;
@@ -27,7 +29,7 @@ struct Post {
   Window reach;    // what he could be asked about
   Window targets;  // what he is asked about
   Window lines;    // what must be in memory for it
-  ObserverFrame frame;
+  ObserverFrames frames;
 };
 
 std::vector<Post> place_observers(const DemSource& source, const Georeference& georeference,
@@ -43,9 +45,9 @@ std::vector<Post> place_observers(const DemSource& source, const Georeference& g
     const GridPlace place = place_on(source, o.x, o.y, name);
     const Window reach = reach_of(source, georeference, place, o.max_distance);
     const Window targets = intersection(reach, asked);
-    ObserverFrame frame = frame_of(georeference, place, reach);
-    const Window lines = targets.empty() ? Window{place.base_col, place.base_row, 1, 1} : lines_window(source, frame, place, targets);
-    posts.push_back({o, name, place, reach, targets, lines, std::move(frame)});
+    ObserverFrames frames = frames_of(source, georeference, place, reach);
+    const Window lines = targets.empty() ? Window{place.base_col, place.base_row, 1, 1} : lines_window(source, frames.widest(), place, targets);
+    posts.push_back({o, name, place, reach, targets, lines, std::move(frames)});
     progress.check();
   }
   return posts;
@@ -149,12 +151,16 @@ class Run {
 
     View view{terrain.scene(), {}, {}, terrain.ground(), terrain.cell_areas(), {}};
     const SampleField& sampling = terrain.scene().error.sampling;
-    view.eye = {&post.frame, post.place.base_col - window.col, post.place.base_row - window.row, out.eye_height,
-                sampling.is_constant() ? static_cast<double>(sampling.constant()) : interpolate(sampling.values(), col, row)};
+    view.eye = {&post.frames.widest(), post.place.base_col - window.col, post.place.base_row - window.row, out.eye_height,
+                sampling.is_constant() ? static_cast<double>(sampling.constant()) : interpolate(sampling.values(), col, row),
+                &post.frames};
     view.tops = {absolute ? nullptr : &terrain.ground(), o.target_height};
-    view.limits = {o.min_distance, o.max_distance, o.azimuth_from, o.azimuth_to, o.angle_from, o.angle_to};
+    // Distances are good to 1e-6 cells: a cell on the limit is within it.
+    const double on_the_limit = kOnTheLimit * terrain.scene().error.larger_side_m;
+    view.limits = {o.min_distance - on_the_limit, o.max_distance + on_the_limit, o.azimuth_from, o.azimuth_to, o.angle_from, o.angle_to};
     canvas_.move_to(canvas_window_.col - window.col, canvas_window_.row - window.row);
     const ViewTotals seen = viewshed(view, canvas_, workers_, progress_);
+    canvas_.next_observer();
     out.visible_m2 = seen.visible_m2;
     out.uncertain_m2 = seen.uncertain_m2;
     out.hidden_m2 = seen.hidden_m2;

@@ -9,7 +9,7 @@ namespace sightbound {
 
 namespace {
 
-double largest_profile(const ErrorField& error) {
+double most_growth(const ErrorField& error) {
   // The paper's f(Delta) makes the profile depend on the amplitude; 1 bounds it and keeps the bound linear.
   if (error.profile.shape == GeologicShape::kGaussian && error.profile.range_m <= 0) return 1;
   double largest = 0;
@@ -40,7 +40,7 @@ Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const Sc
       uniform(error_in.sampling.is_constant() && error_in.amplitude.is_constant() && error_in.amplitude.constant() == 0),
       highest(heights_in.rows(), heights_in.cols(), [&](int r, float*) { return heights_in.row(r); }, workers),
       least_sigma(std::max(least_sampling(error_in.sampling), kLeastSigma)),
-      largest_profile_(largest_profile(error_in)) {
+      largest_profile_(most_growth(error_in)) {
   if (uniform) return;
   widest = MaxPyramid(
       heights.rows(), heights.cols(),

@@ -41,6 +41,7 @@ struct Scene {
   // Upper bounds of sigma in terms of sample values: on every triangle sigma is at most the linear interpolation of these.
   double sigma_bound(int row, int col) const { return std::max(error.sampling.at(row, col) + between_bound(row, col), kLeastSigma); }
   double between_bound(int row, int col) const { return error.amplitude.at(row, col) * largest_profile_; }
+  double largest_profile() const { return largest_profile_; }
 
  private:
   double largest_profile_ = 0;

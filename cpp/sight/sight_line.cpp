@@ -19,6 +19,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRim = kFrameTolerance;
 // Metres; keeps the rounding of a bound (1e-12 of a height) from excluding the place that decides.
 constexpr double kSlack = 1e-7;
+// Cells a path may bow within one step to be straight there.
+constexpr double kStraightStep = 1e-8;
+// Cells a path may bow for its chord to bound it well enough.
+constexpr double kStraightEnough = 0.25;
 // A place nearer to an end than this many larger cell sides is the end itself: what is left of the clearance there is rounding.
 constexpr double kAtEnd = 1e-4;
 constexpr std::array kEndPlaces{1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 3.0 / 4};  // larger cell sides from an end
@@ -111,12 +115,19 @@ template <class Objective>
 class SightLine::Search {
  public:
   Search(const SightLine& line, Objective objective)
-      : line_(line), scene_(line.scene_), objective_(objective), bow_(line.path_.bow_bound()) {
+      : line_(line),
+        scene_(line.scene_),
+        objective_(objective),
+        bow_(line.path_.bow_bound()),
+        bow_size_(line.path_.largest_bow()),
+        stretch_size_(line.path_.largest_stretch()) {
     const double end = line.major0_ + line.span_;
+    per_span_ = 1 / line.span_;
     low_ = std::min(line.major0_, end);
     high_ = std::max(line.major0_, end);
     first_ = static_cast<int>(std::floor(low_)) + line.base_major_;
     last_ = std::max(first_, static_cast<int>(std::ceil(high_)) - 1 + line.base_major_);
+    curved_ = bow_ * per_span_ * per_span_ / 8 > kStraightStep;
     at_end_ = kAtEnd * scene_.error.larger_side_m / line.distance_;
   }
 
@@ -128,24 +139,29 @@ class SightLine::Search {
   bool hole() const { return hole_; }
 
   void all(double hint) {
-    end_places();
+    const MajorRange whole{first_, last_ + 1};
+    within({&whole, 1}, hint);
+  }
+
+  // First where lines are most often decided: right before the target, and where a neighbour's was.
+  void within(std::span<const MajorRange> ranges, double hint) {
+    step(line_.span_ > 0 ? last_ : first_);
+    if (objective_.done()) return;
     if (hint > 0 && hint < 1) {
       const int near = static_cast<int>(std::floor(line_.major0_ + hint * line_.span_)) + line_.base_major_;
       step(std::clamp(near, first_, last_));
     }
-    int level = MaxPyramid::kFinest;
-    while (level < scene_.highest.coarsest() && (first_ >> level) != (last_ >> level)) ++level;
-    for (int node = first_ >> level; node <= last_ >> level; ++node) {
-      if (!excluded(level, node)) descend(level, node);
+    for (const MajorRange& range : ranges) {
+      from_ = std::max(range.from, first_);
+      to_ = std::min(range.to - 1, last_);
+      if (from_ > to_) continue;
+      int level = MaxPyramid::kFinest;
+      while (level < scene_.highest.coarsest() && (from_ >> level) != (to_ >> level)) ++level;
+      for (int node = from_ >> level; node <= to_ >> level && !objective_.done(); ++node) {
+        if (!excluded(level, node)) descend(level, node);
+      }
     }
-  }
-
-  // Only the steps outside [clear_from, clear_to].
-  void ends(int clear_from, int clear_to) {
-    end_places();
-    const int from = std::min(clear_from, clear_to), to = std::max(clear_from, clear_to);
-    for (int s = first_; s < std::min(from, last_ + 1); ++s) step(s);
-    for (int s = std::max(to, first_); s <= last_; ++s) step(s);
+    if (!objective_.done()) end_places();
   }
 
   template <class Visitor>
@@ -158,7 +174,7 @@ class SightLine::Search {
   }
 
  private:
-  double xi_of(double m) const { return (m - line_.major0_) / line_.span_; }
+  double xi_of(double m) const { return (m - line_.major0_) * per_span_; }
   double m_of(int s) const { return s - line_.base_major_; }
   // A place this far out has no terrain; up to kRim it follows the rim.
   bool is_outside(double w) const {
@@ -174,54 +190,87 @@ class SightLine::Search {
 
   // ---- bounding -------------------------------------------------------------------------------------------------
 
+  // A stretch of the line between two majors, and where it runs in between.
+  struct Stretch {
+    double t_low, t_high;   // shares of the distance
+    double w_low, w_high;   // minor coordinates
+    double line_low;        // the line stays above
+  };
+  Stretch stretch(double m_a, double m_b) const {
+    const double xi_a = xi_of(m_a), xi_b = xi_of(m_b), width = std::abs(xi_b - xi_a);
+    double w_a, w_b, pad;
+    if (bow_size_ < kStraightEnough) {  // chord and margin are cheaper than the path itself
+      w_a = line_.path_.chord(xi_a);
+      w_b = line_.path_.chord(xi_b);
+      pad = bow_size_;
+    } else {
+      w_a = line_.path_.minor(xi_a);
+      w_b = line_.path_.minor(xi_b);
+      pad = bow_ * width * width / 8;
+    }
+    const double t_low = std::max(std::min(xi_a, xi_b) - stretch_size_, 0.0), t_high = std::max(xi_a, xi_b) + stretch_size_;
+    // The line bulges below its chord by at most drop (share of the distance)^2 / 4.
+    const double low = std::min(height(t_low), height(t_high)) - line_.drop_ * (t_high - t_low) * (t_high - t_low) / 4;
+    return {t_low, t_high, std::min(w_a, w_b) - pad, std::max(w_a, w_b) + pad, low};
+  }
+
+  bool excludes(const Stretch& s, double z, double sigma_max) const {
+    if (s.t_low <= 0) return false;
+    const bool in_end_zone =
+        s.t_low * line_.distance_ < scene_.end_zone_m || (1 - s.t_high) * line_.distance_ < scene_.end_zone_m;
+    return objective_.excludes(s.t_low, s.t_high, s.line_low, z, sigma_max, in_end_zone ? kLeastSigma : scene_.least_sigma);
+  }
+
   bool excluded(int level, int node) {
-    const double from = std::max(low_, m_of(node << level)), to = std::min(high_, m_of((node + 1) << level));
-    const double xi_a = xi_of(from), xi_b = xi_of(to);
-    const double width = std::abs(xi_b - xi_a), pad = bow_ * width * width / 8;
-    const double w_a = line_.path_.minor(xi_a), w_b = line_.path_.minor(xi_b);
-    const double w_low = std::min(w_a, w_b) - pad, w_high = std::max(w_a, w_b) + pad;
-    const int a = cell_of(w_low) >> level, b = cell_of(w_high) >> level;
-    bool unknown = is_outside(w_low) || is_outside(w_high);
-    float z = scene_.highest.max(level, line_.transposed_ ? node : a, line_.transposed_ ? a : node);
-    float sigma = scene_.uniform ? 0 : widest(level, node, a);
+    const Stretch part = stretch(std::max(low_, m_of(std::max(node << level, from_))),
+                                 std::min(high_, m_of(std::min((node + 1) << level, to_ + 1))));
+    const int a = cell_of(part.w_low) >> level, b = cell_of(part.w_high) >> level;
+    bool unknown = is_outside(part.w_low) || is_outside(part.w_high);
+    float z = std::numeric_limits<float>::lowest(), sigma = 0;
     for (int minor = a; minor <= b; ++minor) {
       const int row = line_.transposed_ ? node : minor, col = line_.transposed_ ? minor : node;
       z = std::max(z, scene_.highest.max(level, row, col));
-      if (!scene_.uniform) sigma = std::max(sigma, widest(level, node, minor));
+      if (!scene_.uniform) sigma = std::max(sigma, scene_.widest.max(level, row, col));
       unknown = unknown || scene_.highest.has_hole(level, row, col);
     }
-    if (unknown && !scene_.see_across_nodata && objective_.unknown_matters()) return false;
-
-    const double t_a = line_.path_.share(xi_a), t_b = line_.path_.share(xi_b);
-    const double t_low = std::max(std::min(t_a, t_b), 0.0), t_high = std::max(t_a, t_b), width_t = t_high - t_low;
-    // The line bulges below its chord by at most drop width^2 / 4.
-    const double line_low = std::min(height(t_a), height(t_b)) - line_.drop_ * width_t * width_t / 4;
+    if (unknown && !scene_.see_across_nodata && objective_.unknown_matters()) {
+      sigma_cap_ = kInfinity;
+      return false;
+    }
     const double ends_most = scene_.ends_move ? std::max(line_.eye_sampling_, line_.target_sampling_) : 0;
-    const double sigma_max = (scene_.uniform ? scene_.least_sigma : static_cast<double>(sigma)) + ends_most;
-    sigma_cap_ = sigma_max;
-    const bool in_end_zone = t_low * line_.distance_ < scene_.end_zone_m || (1 - t_high) * line_.distance_ < scene_.end_zone_m;
-    const double sigma_min = in_end_zone ? kLeastSigma : scene_.least_sigma;
-    if (t_low <= 0) return false;
-    return objective_.excludes(t_low, t_high, line_low, static_cast<double>(z), sigma_max, sigma_min);
+    sigma_cap_ = (scene_.uniform ? scene_.least_sigma : static_cast<double>(sigma)) + ends_most;
+    return excludes(part, static_cast<double>(z), sigma_cap_);
   }
 
-  float widest(int level, int node, int minor) const {
-    return scene_.widest.max(level, line_.transposed_ ? node : minor, line_.transposed_ ? minor : node);
+  // The same for one step of the node just looked at, by the samples of the cells it crosses.
+  bool excluded_step(int s) const {
+    const Stretch part = stretch(std::max(low_, m_of(s)), std::min(high_, m_of(s + 1)));
+    if (is_outside(part.w_low) || is_outside(part.w_high) || s + 1 >= line_.majors_) return false;
+    const int from = cell_of(part.w_low), to = cell_of(part.w_high) + 1;
+    float z = std::numeric_limits<float>::lowest();
+    for (int j = from; j <= to; ++j) {
+      const float z_a = scene_.heights.data()[sample(s, j)], z_b = scene_.heights.data()[sample(s + 1, j)];
+      if (std::isnan(z_a) || std::isnan(z_b)) return false;
+      z = std::max({z, z_a, z_b});
+    }
+    return excludes(part, static_cast<double>(z), sigma_cap_);
   }
 
   // To be called right after excluded() for the same node.
   void descend(int level, int node) {
     if (objective_.done()) return;
     if (level == MaxPyramid::kFinest) {
-      const int from = std::max(first_, node << level), to = std::min(last_, ((node + 1) << level) - 1);
-      for (int s = from; s <= to && !objective_.done(); ++s) step(s);
+      const int from = std::max(from_, node << level), to = std::min(to_, ((node + 1) << level) - 1);
+      for (int s = from; s <= to && !objective_.done(); ++s) {
+        if (!excluded_step(s)) step(s);
+      }
       sigma_cap_ = kInfinity;
       return;
     }
     // The end nearer to the target first: on rising ground it decides more often.
     const int child = line_.span_ > 0 ? 2 * node + 1 : 2 * node;
     for (const int c : {child, 4 * node + 1 - child}) {
-      if (c < (first_ >> (level - 1)) || c > (last_ >> (level - 1))) continue;
+      if (c < (from_ >> (level - 1)) || c > (to_ >> (level - 1))) continue;
       if (!excluded(level - 1, c)) descend(level - 1, c);
     }
   }
@@ -256,7 +305,7 @@ class SightLine::Search {
       const double g_low = std::min(g_a, g_b), g_high = std::max(g_a, g_b);
       for (double g = std::floor(g_low) + 1; g < g_high; ++g) {
         double m = m_a + (g - g_a) / (g_b - g_a) * (m_b - m_a);
-        if (bow_ > 0) {  // the path is curved: one Newton step from its chord
+        if (curved_) {  // one Newton step from the chord of the step
           const double slope = line_.path_.minor_slope(xi_of(m)) / line_.span_ - (diagonal ? 1 : 0);
           const double value = line_.path_.minor(xi_of(m)) - (diagonal ? m : 0);
           const double better = m + (g - value) / slope;
@@ -301,7 +350,9 @@ class SightLine::Search {
     if (from_end >= line_.distance_) return;
     const double t = f > 0 ? from_end / line_.distance_ : 1 - from_end / line_.distance_;
     double xi = t;
-    for (int i = 0; i < 3; ++i) xi -= line_.path_.share(xi) - t;  // the share differs from xi by little, and smoothly
+    if (stretch_size_ > 0) {
+      for (int i = 0; i < 3; ++i) xi -= line_.path_.share(xi) - t;  // the share differs from xi by little, and smoothly
+    }
     const double m = line_.major0_ + xi * line_.span_, w = line_.path_.minor(xi);
     const int i = std::clamp(static_cast<int>(std::floor(m)) + line_.base_major_, 0, line_.majors_ - 2), j = cell_of(w);
     const double fm = std::clamp(m - m_of(i), 0.0, 1.0), fw = inside(w) - (j - line_.base_minor_);
@@ -376,11 +427,13 @@ class SightLine::Search {
   const SightLine& line_;
   const Scene& scene_;
   Objective objective_;
-  double bow_;
+  double bow_, bow_size_, stretch_size_;
   double sigma_cap_ = kInfinity;  // no sigma of the places at hand is larger
-  double low_, high_;
+  bool curved_;
+  double low_, high_, per_span_;
   double at_end_;  // share of the distance
-  int first_, last_;
+  int first_, last_;      // steps of the line, in the scene's grid
+  int from_ = 0, to_ = 0;  // those being searched
   double critical_xi_ = -1;
   bool hole_ = false;
 };
@@ -400,10 +453,10 @@ SightLine::SightLine(const Scene& scene, const Eye& eye, const Target& target)
       target_height_(target.height),
       eye_sampling_(eye.sampling),
       target_sampling_(target.sampling),
-      place_(eye.frame->at(target.col, target.row)),
+      place_(eye.frame_to(target.col, target.row).at(target.col, target.row)),
       distance_(place_.distance()),
       drop_(scene.bend * place_.bulge) {
-  if (span_ != 0) path_ = eye.frame->path_to(target.col, target.row, transposed_);
+  if (span_ != 0) path_ = eye.frame_to(target.col, target.row).path_to(target.col, target.row, transposed_);
 }
 
 double SightLine::elevation_deg() const {
@@ -411,16 +464,14 @@ double SightLine::elevation_deg() const {
 }
 
 Critical SightLine::settle(double hint) const {
-  if (span_ == 0) return {scene_.largest_ratio, -1, false};
-  Search search(*this, LeastRatio(*this, -scene_.largest_ratio));
-  search.all(hint);
-  return {std::max(search.objective().best(), -scene_.largest_ratio), search.critical_xi(), search.hole()};
+  const MajorRange whole{std::numeric_limits<int>::min() / 2, std::numeric_limits<int>::max() / 2};
+  return settle({&whole, 1}, hint);
 }
 
-Critical SightLine::settle_ends(int clear_from, int clear_to) const {
+Critical SightLine::settle(std::span<const MajorRange> open, double hint) const {
   if (span_ == 0) return {scene_.largest_ratio, -1, false};
   Search search(*this, LeastRatio(*this, -scene_.largest_ratio));
-  search.ends(clear_from, clear_to);
+  search.within(open, hint);
   return {std::max(search.objective().best(), -scene_.largest_ratio), search.critical_xi(), search.hole()};
 }
 

@@ -10,8 +10,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 
-#include "earth/observer_frame.h"
+#include "earth/observer_frames.h"
 #include "sight/scene.h"
 
 namespace sightbound {
@@ -23,6 +24,9 @@ struct Eye {
   int base_col = 0, base_row = 0;        // the base sample in the scene's grid
   double height = 0;    // metres, absolute
   double sampling = 0;  // sigma_s of the ground at the observer, metres (counts when the ends move)
+  const ObserverFrames* frames = nullptr;  // by distance; none: `frame` answers for every place
+
+  const ObserverFrame& frame_to(double col, double row) const { return frames != nullptr ? frames->of(col, row) : *frame; }
 };
 
 struct Target {
@@ -37,6 +41,11 @@ struct JudgedPlace {
   double ground = 0;      // metres; NaN = unknown
   double sigma = 0;       // metres, what it is judged with
   double line = 0;        // height of the line, metres
+};
+
+// Steps [from, to) between columns (rows, when transposed) of the scene's grid.
+struct MajorRange {
+  int from = 0, to = 0;
 };
 
 struct Critical {
@@ -59,9 +68,8 @@ class SightLine {
 
   // k*. `hint`: xi near which a neighbour was decided, or -1.
   Critical settle(double hint = -1) const;
-  // The same when everything between the columns (rows, when transposed) `clear_from` and `clear_to` of the scene's grid,
-  // in either order, is known to clear by K.
-  Critical settle_ends(int clear_from, int clear_to) const;
+  // The same when everything outside `open` is known to clear by K.
+  Critical settle(std::span<const MajorRange> open, double hint) const;
   // Lowest absolute height of the target at which k* >= k, for k >= 0; never below `floor`, infinite behind unknown ground
   // when k > 0.
   double needed_height(double k, double floor, double hint = -1) const;

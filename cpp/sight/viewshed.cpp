@@ -8,6 +8,24 @@
 
 namespace sightbound {
 
+inline void Canvas::put(int row, int col, float p, std::uint8_t claim) {
+  const int r = row - window_.row, c = col - window_.col;
+  if (fresh_) {
+    confidence.at(r, c) = p;
+    verdict.at(r, c) = claim;
+    if (!count.empty()) count.at(r, c) = claim == kVisible;
+    return;
+  }
+  float& p_before = confidence.at(r, c);
+  std::uint8_t& claim_before = verdict.at(r, c);
+  if (claim_before == kNoVerdict || (best_ ? p > p_before : p < p_before)) p_before = p;
+  if (claim_before == kNoVerdict || (best_ ? claim > claim_before : claim < claim_before)) claim_before = claim;
+  if (count.empty()) return;
+  std::uint32_t& n = count.at(r, c);
+  if (n == kNoCount) n = 0;
+  if (claim == kVisible) ++n;
+}
+
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -20,22 +38,35 @@ class Painter {
 
   const ViewTotals& totals() const { return totals_; }
 
-  void paint(const FanColumn& column) {
+  void paint(const FanColumn& column, const WedgeFan::OpenPartsOf& open_parts) {
     const ViewLimits& limits = view_.limits;
     const bool by_place = column.least_distance < limits.min_distance || column.most_distance > limits.max_distance ||
                           !limits.all_azimuths() || !limits.all_angles();
+    const bool plain = !by_place && !canvas_.has_heights();  // hidden is all there is to say of most
+    // The part on the canvas.
+    const Window& window = canvas_.window();
+    const int first = column.transposed ? window.col : window.row, end = column.transposed ? window.col_end() : window.row_end();
+    const int major_first = column.transposed ? window.row : window.col;
+    const int major_end = column.transposed ? window.row_end() : window.col_end();
+    if (column.major < major_first || column.major >= major_end) return;
+    const int from = std::max(first - column.first_minor, 0), to = std::min(end - column.first_minor, column.count);
+
     double hint = -1;
-    for (int i = 0; i < column.count; ++i) {
+    for (int i = from; i < to; ++i) {
       const int minor = column.first_minor + i;
       const int row = column.transposed ? column.major : minor, col = column.transposed ? minor : column.major;
-      const float ground = scene_.heights.at(row, col);
-      if (ground != ground || !canvas_.holds(row, col) || (by_place && !asked(row, col))) continue;
-      const auto state = static_cast<TargetState>(column.state[i]);
-      if (state == kSurelyHidden && !canvas_.has_heights()) {
+      const bool hidden = column.state[i] == kSurelyHidden;
+      if (plain && hidden) {
+        canvas_.put(row, col, 0, kHidden);
+        totals_.hidden_m2 += area(row);
+        continue;
+      }
+      if (std::isnan(scene_.heights.at(row, col)) || (by_place && !asked(row, col))) continue;
+      if (hidden && !canvas_.has_heights()) {
         put(row, col, -scene_.largest_ratio);
         continue;
       }
-      settle(column, state, row, col, hint);
+      settle(hidden ? OpenParts() : open_parts(i), hidden, row, col, hint);
     }
     work_ += column.count;
     if (work_ > kReportEvery) {
@@ -66,7 +97,8 @@ class Painter {
 
   bool asked(int row, int col) const {
     const ViewLimits& limits = view_.limits;
-    const FramePlace place = view_.eye.frame->at(col - view_.eye.base_col, row - view_.eye.base_row);
+    const int from_col = col - view_.eye.base_col, from_row = row - view_.eye.base_row;
+    const FramePlace place = view_.eye.frame_to(from_col, from_row).at(from_col, from_row);
     const double distance = place.distance();
     if (distance < limits.min_distance || distance > limits.max_distance) return false;
     if (!limits.all_azimuths() && !limits.admits_azimuth(place.azimuth_deg())) return false;
@@ -76,21 +108,20 @@ class Painter {
     return angle >= limits.angle_from && angle <= limits.angle_to;
   }
 
-  void settle(const FanColumn& column, TargetState state, int row, int col, double& hint) {
+  void settle(OpenParts open, bool hidden, int row, int col, double& hint) {
     const double base_ground = static_cast<double>(view_.ground.at(row, col));
     if (std::isnan(base_ground)) return;  // no ground to stand on
     const SightLine line(scene_, view_.eye, target(row, col));
     Critical critical{-scene_.largest_ratio, -1, false};
-    if (state == kClearBetween) critical = line.settle_ends(column.clear_from, column.clear_to);
-    if (state == kOpen) {
-      critical = line.settle(hint);
+    if (!hidden) {
+      critical = line.settle(open, hint);
       hint = critical.xi;
     }
     put(row, col, critical.k);
     if (critical.hole && verdict(scene_, critical.k) == kUncertain) {
       totals_.hole_doubt_m2 += area(row);
     }
-    if (state != kSurelyHidden) ++totals_.settled;
+    if (!hidden) ++totals_.settled;
     if (canvas_.has_heights()) {
       const double certain = line.needed_height(scene_.quantile, base_ground, hint);
       const double likely = line.needed_height(0, base_ground, hint);
@@ -150,18 +181,6 @@ void Canvas::flip_rows() {
 
 void Canvas::start_counting() { count = Grid<std::uint32_t>(window_.rows, window_.cols, kNoCount); }
 
-void Canvas::put(int row, int col, float p, std::uint8_t claim) {
-  const int r = row - window_.row, c = col - window_.col;
-  float& p_before = confidence.at(r, c);
-  std::uint8_t& claim_before = verdict.at(r, c);
-  if (claim_before == kNoVerdict || (best_ ? p > p_before : p < p_before)) p_before = p;
-  if (claim_before == kNoVerdict || (best_ ? claim > claim_before : claim < claim_before)) claim_before = claim;
-  if (count.empty()) return;
-  std::uint32_t& n = count.at(r, c);
-  if (n == kNoCount) n = 0;
-  if (claim == kVisible) ++n;
-}
-
 void Canvas::put_heights(int row, int col, float certain, float likely) {
   const int r = row - window_.row, c = col - window_.col;
   const auto combine = [this](float& before, float now) {
@@ -197,7 +216,7 @@ ViewTotals viewshed(const View& view, Canvas& canvas, const Workers& workers, Pr
   }
   workers.for_each(fan.blocks(), [&](std::size_t block) {
     Painter painter(view, canvas, progress);
-    fan.march(block, [&](const FanColumn& column) { painter.paint(column); });
+    fan.march(block, [&](const FanColumn& column, const WedgeFan::OpenPartsOf& open) { painter.paint(column, open); });
     painter.finish();
     totals[block] = painter.totals();
   });

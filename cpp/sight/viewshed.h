@@ -38,6 +38,8 @@ class Canvas {
   }
   // The canvas seen from another scene whose grid starts elsewhere.
   void move_to(int col, int row) { window_.col = col, window_.row = row; }
+  // Every cell is put at most once per observer: after the first one results are combined.
+  void next_observer() { fresh_ = false; }
 
   void put(int row, int col, float p, std::uint8_t verdict);
   void put_heights(int row, int col, float certain, float likely);
@@ -54,7 +56,7 @@ class Canvas {
 
  private:
   Window window_;
-  bool best_;
+  bool best_, fresh_ = true;
 };
 
 // What one observer sees, square metres; in doubt for holes alone: counted in `uncertain_m2` too.

@@ -13,9 +13,11 @@ namespace sightbound {
 
 namespace {
 
-constexpr int kBlocksPerUnit = 32;    // blocks per unit of slope: enough tasks for many threads, enough wedges for vectors
-constexpr int kLeastWedges = 8;       // per block
+constexpr int kBlocksPerUnit = 16;    // blocks per unit of slope: enough tasks for many threads, enough wedges for vectors
+constexpr int kLeastWedges = kVector;  // per block
 constexpr double kWedgesPerCell = 1;  // at least so many wedges cross a cell side
+constexpr int kLeastPart = 32;        // columns an upper horizon stands for, at least
+constexpr int kMostParts = 64;
 constexpr double kFirstBelow = 0.5;   // steps from the observer where the lower horizon begins
 constexpr double kFirstAbove = 2;     // ... and the upper one: nearer, a corner's slope says nothing
 constexpr double kInterpolation = 2;  // safety on the error of interpolating between two geodesics, measured half way
@@ -55,31 +57,34 @@ class WedgeFan::March {
     eye_below_ = static_cast<float>(eye_.height + moving);
     // A float is right to 6e-8 of its size; some eight roundings meet in one slope.
     height_pad_ = static_cast<float>(1e-3 + 5e-7 * std::max(std::abs(eye_.height), 1e4));
-    above_.assign(static_cast<std::size_t>(wedges_), kUnbounded);
-    before_ = above_;
     below_.assign(static_cast<std::size_t>(wedges_), -kUnbounded);
+    // Parts of equal length, a power of two, so many that a search can be confined to few columns.
+    while (part_length_ * kMostParts < block.reach) part_length_ *= 2;
     bound_curvature();
   }
 
-  void run(double reach_m, const std::function<void(const FanColumn&)>& visit) {
+  void run(double reach_m, const Visitor& visit) {
     int major = block_.sign > 0 ? static_cast<int>(std::floor(major0_)) + 1 : static_cast<int>(std::ceil(major0_)) - 1;
-    ColumnPlace near = place(major - block_.sign), here = place(major), next = place(major + block_.sign);
-    Column near_column, column;
+    ColumnPlace before = place(major - 2 * block_.sign), near = place(major - block_.sign), here = place(major);
+    Column before_column, near_column, column;
     for (; here.major + base_major_ >= 0 && here.major + base_major_ < majors_; major += block_.sign) {
       if (here.distance.low() > reach_m) return;
-      next = place(here.major + block_.sign);
+      const ColumnPlace next = place(here.major + block_.sign);
       if (is_off_grid(here)) {
         // The block has left the grid; should a bent one come back, nothing is known of what it missed.
-        std::fill(above_.begin(), above_.end(), kUnbounded);
-        before_ = above_;
-        near_column.rows = 0;
+        for (Part& part : parts_) std::fill(part.above.begin(), part.above.end(), kUnbounded);
+        column.rows = 0;
       } else {
         load(near, here, next, column);
         targets(here, column, visit);
         split(here.step);
-        advance(near, here, near_column, column);
-        std::swap(near_column, column);
+        lower(here, column);
       }
+      // The upper horizon stays two columns behind the targets: nearer places are judged without the measurement error.
+      raise(before, near, before_column, near_column);
+      std::swap(before_column, near_column);
+      std::swap(near_column, column);
+      before = near;
       near = here;
       here = next;
     }
@@ -98,9 +103,10 @@ class WedgeFan::March {
     p.step = std::max(block_.sign * (major - major0_), 0.0);
     const auto three = [](auto f) { return Fan3{f(0), f(1), f(2)}; };
     p.minor = three([&](std::size_t i) { return rays_[i].minor(p.step); });
-    p.distance = three([&](std::size_t i) { return rays_[i].distance(p.step); });
-    p.tau = three([&](std::size_t i) { return rays_[i].distance(p.step) / rays_[i].metres_per_step(); });
-    p.square = three([&](std::size_t i) { return rays_[i].distance(p.step) * rays_[i].distance(p.step); });
+    const std::array distance{rays_[0].distance(p.step), rays_[1].distance(p.step), rays_[2].distance(p.step)};
+    p.distance = three([&](std::size_t i) { return distance[i]; });
+    p.tau = three([&](std::size_t i) { return distance[i] / rays_[i].metres_per_step(); });
+    p.square = three([&](std::size_t i) { return distance[i] * distance[i]; });
     return p;
   }
 
@@ -140,49 +146,83 @@ class WedgeFan::March {
   static float largest_inverse(const ColumnPlace& p) { return static_cast<float>((1 + 1e-6) / p.tau.low()); }
   static float smallest_inverse(const ColumnPlace& p) { return static_cast<float>((1 - 1e-6) / p.tau.high()); }
 
-  void load(const ColumnPlace& near, const ColumnPlace& here, const ColumnPlace& next, Column& column) const {
+  void load(const ColumnPlace& near, const ColumnPlace& here, const ColumnPlace& next, Column& column) {
     constexpr int kMargin = 3;  // rows beyond the edges: pads and the cell around an edge
     const double low = std::min({near.minor.low(), here.minor.low(), next.minor.low()});
     const double high = std::max({near.minor.high(), here.minor.high(), next.minor.high()});
     column.first = static_cast<int>(std::floor(low)) - kMargin;
     column.rows = static_cast<int>(std::ceil(high)) + kMargin - column.first + 1;
-    for (auto* values : {&column.above, &column.below, &column.top_above, &column.top_below}) {
-      values->resize(static_cast<std::size_t>(column.rows));
+    const auto room = static_cast<std::size_t>(column.rows + 2 * kVector);
+    for (auto* values : {&column.above, &column.below, &column.top_above, &column.top_below, &z_}) {
+      if (values->size() < room) values->resize(room);
     }
-    const float unknown_above = scene_.see_across_nodata ? -kUnbounded : kUnbounded;
-    const bool end_zone = here.distance.high() < scene_.end_zone_m;
-    const double k = scene_.largest_ratio;
     const int major = here.major + base_major_;
-    const float uniform_above = static_cast<float>(k * scene_.least_sigma) + height_pad_;
-    const float uniform_below = static_cast<float>(k * (end_zone ? kLeastSigma : scene_.least_sigma)) + height_pad_;
-    for (int j = 0; j < column.rows; ++j) {
-      const auto at = static_cast<std::size_t>(j);
-      const int minor = column.first + j + base_minor_;
-      const int row = block_.transposed ? major : minor, col = block_.transposed ? minor : major;
-      const float z = minor < 0 || minor >= minors_ ? std::numeric_limits<float>::quiet_NaN() : scene_.heights.at(row, col);
-      if (z != z) {
-        column.above[at] = unknown_above;
-        column.below[at] = -kUnbounded;
-        column.top_above[at] = column.top_below[at] = 0;
-        continue;
-      }
-      const float top = static_cast<float>(tops_.at(row, col));
-      const float moving = scene_.ends_move ? static_cast<float>(k) * scene_.error.sampling.at(row, col) : 0;
-      column.top_above[at] = top - moving - height_pad_;
-      column.top_below[at] = top + moving + height_pad_;
-      if (scene_.uniform) {
-        column.above[at] = z + uniform_above;
-        column.below[at] = z - uniform_below;
-      } else {
-        const double between = std::max(scene_.between_bound(row, col), kLeastSigma);
-        const float full = static_cast<float>(k * scene_.sigma_bound(row, col)) + height_pad_;
-        column.above[at] = z + full;
-        column.below[at] = z - (end_zone ? static_cast<float>(k * between) + height_pad_ : full);
-      }
+    copy(scene_.heights, major, column, z_, std::numeric_limits<float>::quiet_NaN());
+
+    const double k = scene_.largest_ratio;
+    ColumnBounds bounds;
+    bounds.count = column.rows;
+    bounds.unknown = scene_.see_across_nodata ? -kUnbounded : kUnbounded;
+    bounds.end_zone = here.distance.high() < scene_.end_zone_m;
+    bounds.pad = height_pad_;
+    bounds.ratio = static_cast<float>(k * (1 + 1e-6));
+    bounds.full = static_cast<float>(k * scene_.least_sigma) + height_pad_;
+    bounds.near_end = bounds.end_zone ? static_cast<float>(k * kLeastSigma) + height_pad_ : bounds.full;
+    if (!scene_.uniform) {
+      sampling_.resize(room);
+      between_.resize(room);
+      copy(scene_.error.sampling, major, column, sampling_);
+      copy(scene_.error.amplitude, major, column, between_);
+      const auto profile = static_cast<float>(scene_.largest_profile());
+      for (int j = 0; j < column.rows; ++j) between_[static_cast<std::size_t>(j)] *= profile;
+      bounds.sampling = sampling_.data();
+      bounds.between = between_.data();
+    }
+    bound_column(bounds, z_.data(), column.above.data(), column.below.data());
+    load_tops(major, column);
+  }
+
+  // A column of a grid, `outside` where the grid has none.
+  void copy(const Grid<float>& from, int major, const Column& column, std::vector<float>& to, float outside) const {
+    const int minor = column.first + base_minor_, begin = std::clamp(-minor, 0, column.rows);
+    const int end = std::clamp(minors_ - minor, begin, column.rows);
+    std::fill_n(to.begin(), begin, outside);
+    std::fill(to.begin() + end, to.begin() + column.rows, outside);
+    if (block_.transposed) {
+      std::copy_n(from.row(major) + minor + begin, end - begin, to.begin() + begin);
+    } else {
+      for (int j = begin; j < end; ++j) to[static_cast<std::size_t>(j)] = from.at(minor + j, major);
+    }
+  }
+  void copy(const SampleField& from, int major, const Column& column, std::vector<float>& to) const {
+    if (from.is_constant()) {
+      std::fill_n(to.begin(), column.rows, from.constant());
+    } else {
+      copy(from.values(), major, column, to, 0);
     }
   }
 
-  void targets(const ColumnPlace& here, const Column& column, const std::function<void(const FanColumn&)>& visit) {
+  // What the targets of a column reach up to: at least and at most, when the ground under them moves.
+  void load_tops(int major, Column& column) {
+    const auto height = static_cast<float>(tops_.height);
+    if (tops_.surface == nullptr) {
+      std::fill_n(z_.begin(), column.rows, 0.0f);
+    } else if (tops_.surface != &scene_.heights) {
+      copy(*tops_.surface, major, column, z_, 0);
+    }
+    if (scene_.ends_move) {
+      sampling_.resize(z_.size());
+      copy(scene_.error.sampling, major, column, sampling_);
+    }
+    for (int j = 0; j < column.rows; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      const float slack = height_pad_ + (scene_.ends_move ? static_cast<float>(scene_.largest_ratio) * sampling_[at] : 0);
+      column.top_above[at] = z_[at] + height - slack;
+      column.top_below[at] = z_[at] + height + slack;
+    }
+  }
+
+  void targets(const ColumnPlace& here, const Column& column, const Visitor& visit) {
     // Rows between the block's edges, on this side's half of the diagonals (the diagonals belong to the columns' sides).
     int low = static_cast<int>(std::ceil(here.minor.a)), high = static_cast<int>(std::ceil(here.minor.b));
     const auto mine = [&](int minor) {
@@ -195,7 +235,7 @@ class WedgeFan::March {
     while (low < high && !mine(high - 1)) --high;
     if (low >= high) return;
 
-    states_.resize(static_cast<std::size_t>(high - low));
+    states_.resize(static_cast<std::size_t>(whole_vectors(high - low)));
     TargetStep step;
     step.first_row = low - column.first;
     step.rows = high - low;
@@ -209,9 +249,9 @@ class WedgeFan::March {
     step.least = largest_inverse(here);
     step.most = smallest_inverse(here);
     if (2 * step.pad < step.edges.step) {
-      judge_targets(step, before_.data(), below_.data(), column.top_above.data(), column.top_below.data(), states_.data());
+      judge_targets(step, below_.data(), column.top_below.data(), states_.data());
     } else {  // wedges too thin for their pad: leave everything open
-      std::fill(states_.begin(), states_.end(), static_cast<std::uint8_t>(kOpen));
+      std::fill(states_.begin(), states_.end(), static_cast<std::int32_t>(kOpen));
     }
     FanColumn out;
     out.transposed = block_.transposed;
@@ -219,33 +259,53 @@ class WedgeFan::March {
     out.first_minor = low + base_minor_;
     out.count = high - low;
     out.state = states_.data();
-    out.clear_from = above_from_ + base_major_;
-    out.clear_to = out.major - 2 * block_.sign;
     out.least_distance = here.distance.low();
     out.most_distance = here.distance.high();
-    visit(out);
+    visit(out, [&](int i) { return open_parts(step, i, column.top_above[static_cast<std::size_t>(step.first_row + i)], out.major); });
+  }
+
+  // Everything from the observer to where the upper horizon begins, the parts it does not clear, and what it has not reached.
+  OpenParts open_parts(const TargetStep& step, int i, float top_above, int target_major) {
+    ranges_.clear();
+    const WedgePair wedge = wedges_of(step, i);
+    const float slope = flattest_slope(step, wedge.a, top_above);
+    const bool thin = 2 * step.pad >= step.edges.step;
+    const int observer = static_cast<int>(std::floor(major0_)) + base_major_ + (block_.sign < 0 ? 1 : 0);
+    add_range(observer, (parts_.empty() ? target_major : parts_.front().from + base_major_));
+    for (const Part& part : parts_) {
+      const float reaches = std::max(part.above[static_cast<std::size_t>(wedge.a)], part.above[static_cast<std::size_t>(wedge.b)]);
+      if (thin || !(reaches + 1e-6f * std::abs(reaches) < slope)) add_range(part.from + base_major_, part.to + base_major_);
+    }
+    if (!parts_.empty()) add_range(parts_.back().to + base_major_, target_major);
+    return ranges_;
+  }
+
+  // Columns in the order of the march; steps in order of the grid.
+  void add_range(int from, int to) {
+    const MajorRange range{std::min(from, to), std::max(from, to)};
+    if (range.from == range.to) return;
+    if (!ranges_.empty() && block_.sign > 0 && ranges_.back().to == range.from) {
+      ranges_.back().to = range.to;
+    } else if (!ranges_.empty() && block_.sign < 0 && ranges_.back().from == range.to) {
+      ranges_.back().from = range.from;
+    } else {
+      ranges_.push_back(range);
+    }
   }
 
   void split(double step) {
+    const auto doubled = [](std::vector<float>& values) {
+      values.resize(2 * values.size());
+      for (std::size_t i = values.size(); i-- > 0;) values[i] = values[i / 2];
+    };
     while (wedges_ * kBlocksPerUnit < kWedgesPerCell * step) {
-      for (auto* values : {&above_, &before_, &below_}) {
-        values->resize(static_cast<std::size_t>(2 * wedges_));
-        for (std::size_t i = values->size(); i-- > 0;) (*values)[i] = (*values)[i / 2];
-      }
+      for (Part& part : parts_) doubled(part.above);
+      doubled(below_);
       wedges_ *= 2;
     }
   }
 
-  void advance(const ColumnPlace& near, const ColumnPlace& here, const Column& near_column, const Column& column) {
-    before_ = above_;
-    if (!has_above_ && here.step >= kFirstAbove) {
-      // From this column on the upper horizon is complete.
-      has_above_ = true;
-      above_from_ = here.major;
-      std::fill(above_.begin(), above_.end(), -kUnbounded);
-    } else if (has_above_) {
-      raise(near, here, near_column, column);
-    }
+  void lower(const ColumnPlace& here, const Column& column) {
     if (here.step < kFirstBelow) return;
     WedgeStep step;
     step.wedges = wedges_;
@@ -260,10 +320,20 @@ class WedgeFan::March {
   }
 
   void raise(const ColumnPlace& near, const ColumnPlace& here, const Column& near_column, const Column& column) {
-    if (near_column.rows == 0) return;  // stays unbounded
+    if (near.step < kFirstAbove) return;
+    const int number = std::abs(here.major - static_cast<int>(std::floor(major0_))) / part_length_;
+    if (parts_.empty() || parts_.back().number != number) {
+      parts_.push_back({number, near.major, near.major, std::vector<float>(static_cast<std::size_t>(wedges_), -kUnbounded)});
+    }
+    Part& part = parts_.back();
+    part.to = here.major;
+    if (near_column.rows == 0 || column.rows == 0) {
+      std::fill(part.above.begin(), part.above.end(), kUnbounded);
+      return;
+    }
     const int first = std::max(near_column.first, column.first);
     const int end = std::min(near_column.first + near_column.rows, column.first + column.rows);
-    cells_.resize(static_cast<std::size_t>(end - first));
+    cells_.resize(static_cast<std::size_t>(end - first + 2 * kVector));
     highest_corners(end - first - 1, near_column.above.data() + (first - near_column.first),
                     column.above.data() + (first - column.first), cells_.data());
     WedgeStep step;
@@ -276,8 +346,15 @@ class WedgeFan::March {
     step.eye_above = eye_above_;
     step.near_least = largest_inverse(near);
     step.far_most = smallest_inverse(here);
-    raise_above(step, cells_.data(), above_.data());
+    raise_above(step, cells_.data(), part.above.data());
   }
+
+  // The upper horizon of some columns alone.
+  struct Part {
+    int number;
+    int from, to;              // majors from the base sample
+    std::vector<float> above;  // one a wedge
+  };
 
   const Scene& scene_;
   const Eye& eye_;
@@ -289,11 +366,12 @@ class WedgeFan::March {
   float eye_above_, eye_below_, height_pad_;
   double curvature_low_ = 0, curvature_high_ = 0;
   int wedges_;
-  bool has_above_ = false;
-  int above_from_ = 0;
-  std::vector<float> above_, before_, below_;  // horizons; before_ = above_ one column earlier
-  std::vector<float> cells_;
-  std::vector<std::uint8_t> states_;
+  int part_length_ = kLeastPart;
+  std::vector<Part> parts_;
+  std::vector<float> below_;  // the lower horizon, one a wedge
+  std::vector<MajorRange> ranges_;
+  std::vector<float> cells_, z_, sampling_, between_;  // scratch
+  std::vector<std::int32_t> states_;
 };
 
 WedgeFan::WedgeFan(const Scene& scene, const Eye& eye, const TargetTops& tops, double reach_m)
@@ -329,7 +407,7 @@ void WedgeFan::add_side(bool transposed, int sign) {
   }
 }
 
-void WedgeFan::march(std::size_t block, const std::function<void(const FanColumn&)>& visit) const {
+void WedgeFan::march(std::size_t block, const Visitor& visit) const {
   March(*this, blocks_[block]).run(reach_m_, visit);
 }
 

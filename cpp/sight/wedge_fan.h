@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "sight/sight_line.h"
@@ -30,11 +31,12 @@ struct FanColumn {
   bool transposed = false;
   int major = 0;                        // of the scene's grid
   int first_minor = 0, count = 0;
-  const std::uint8_t* state = nullptr;  // TargetState each
-  int clear_from = 0;                   // for kClearBetween: everything from this major ...
-  int clear_to = 0;                     // ... to this one clears by K
+  const std::int32_t* state = nullptr;  // TargetState each
   double least_distance = 0, most_distance = 0;  // metres, of all of them
 };
+
+// For an open target: the parts of its line that the upper horizon does not clear. Valid until the next is asked for.
+using OpenParts = std::span<const MajorRange>;
 
 class WedgeFan {
  public:
@@ -44,7 +46,9 @@ class WedgeFan {
   std::size_t blocks() const { return blocks_.size(); }
   // Visits every target of a block once, nearest column first. The blocks together cover every cell of the scene's grid
   // within reach but the one the observer stands on exactly. Blocks are independent: any order, any thread.
-  void march(std::size_t block, const std::function<void(const FanColumn&)>& visit) const;
+  using OpenPartsOf = std::function<OpenParts(int i)>;  // of target i of the column
+  using Visitor = std::function<void(const FanColumn&, const OpenPartsOf&)>;
+  void march(std::size_t block, const Visitor& visit) const;
 
  private:
   struct Block {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sight/wedge_kernel.h"
 
-#include <algorithm>
 #include <cmath>
+
+#include "error_model/error_model.h"
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(SIGHTBOUND_SCALAR)
 #define SIGHTBOUND_VECTOR __attribute__((target_clones("avx512f", "avx2", "default")))
@@ -14,6 +15,8 @@ namespace sightbound {
 
 namespace {
 
+constexpr float kRounding = 1e-6f;  // relative; several float roundings of 6e-8
+
 inline float least(float a, float b) { return a < b ? a : b; }
 inline float most(float a, float b) { return a > b ? a : b; }
 inline int within(int value, int low, int high) {
@@ -24,11 +27,33 @@ inline int within(int value, int low, int high) {
 }  // namespace
 
 SIGHTBOUND_VECTOR
+void bound_column(const ColumnBounds& c, const float* __restrict z, float* __restrict above, float* __restrict below) {
+  const int count = whole_vectors(c.count);
+  const float unknown = c.unknown, full = c.full, near_end = c.near_end, ratio = c.ratio, pad = c.pad;
+  if (c.sampling == nullptr) {
+    for (int j = 0; j < count; ++j) {
+      above[j] = z[j] == z[j] ? z[j] + full : unknown;
+      below[j] = z[j] == z[j] ? z[j] - near_end : -kUnbounded;
+    }
+    return;
+  }
+  const float* __restrict sampling = c.sampling;
+  const float* __restrict between = c.between;
+  const float counted = c.end_zone ? 0.0f : 1.0f, floor = static_cast<float>(kLeastSigma);
+  for (int j = 0; j < count; ++j) {
+    const float wide = ratio * most(sampling[j] + between[j], floor) + pad;
+    const float narrow = ratio * most(counted * sampling[j] + between[j], floor) + pad;
+    above[j] = z[j] == z[j] ? z[j] + wide : unknown;
+    below[j] = z[j] == z[j] ? z[j] - narrow : -kUnbounded;
+  }
+}
+
+SIGHTBOUND_VECTOR
 void raise_above(const WedgeStep& s, const float* __restrict cells, float* __restrict above) {
   const float near_first = s.near.first, near_step = s.near.step, far_first = s.far.first, far_step = s.far.step;
   const float pad = s.pad, drop_first = s.drop_low.first, drop_step = s.drop_low.step, eye = s.eye_above;
   const float rising = s.near_least, falling = s.far_most;
-  const int wedges = s.wedges, last = s.rows - 2;
+  const int wedges = whole_vectors(s.wedges), last = s.rows - 2;
   for (int i = 0; i < wedges; ++i) {
     const float k = static_cast<float>(i), k1 = k + 1;
     const float low = least(near_first + k * near_step, far_first + k * far_step) - pad;
@@ -47,7 +72,7 @@ void raise_below(const WedgeStep& s, const float* __restrict line, float* __rest
   const float first = s.far.first, step = s.far.step, pad = s.pad;
   const float drop_first = s.drop_high.first, drop_step = s.drop_high.step, eye = s.eye_below;
   const float rising = s.far_most, falling = s.far_least;
-  const int wedges = s.wedges, last = s.rows - 2;
+  const int wedges = whole_vectors(s.wedges), last = s.rows - 2;
   for (int i = 0; i < wedges; ++i) {
     const float k = static_cast<float>(i), k1 = k + 1;
     const float low = first + k * step - pad, high = first + k1 * step + pad;
@@ -64,31 +89,39 @@ void raise_below(const WedgeStep& s, const float* __restrict line, float* __rest
 
 SIGHTBOUND_VECTOR
 void highest_corners(int count, const float* __restrict near, const float* __restrict far, float* __restrict cells) {
-  for (int j = 0; j < count; ++j) cells[j] = most(most(near[j], near[j + 1]), most(far[j], far[j + 1]));
+  const int whole = whole_vectors(count);
+  for (int j = 0; j < whole; ++j) cells[j] = most(most(near[j], near[j + 1]), most(far[j], far[j + 1]));
+}
+
+WedgePair wedges_of(const TargetStep& s, int j) {
+  const float position = static_cast<float>(s.first_row + j) - s.edges.first, per_cell = 1 / s.edges.step;
+  return {within(static_cast<int>((position - s.pad) * per_cell), 0, s.wedges - 1),
+          within(static_cast<int>((position + s.pad) * per_cell), 0, s.wedges - 1)};
+}
+
+float flattest_slope(const TargetStep& s, int a, float top_above) {
+  const float over = top_above - (s.drop_high.first + static_cast<float>(a) * s.drop_high.step) - s.eye_above;
+  const float slope = over * (over > 0 ? s.most : s.least);
+  return slope - kRounding * std::fabs(slope);
 }
 
 SIGHTBOUND_VECTOR
-void judge_targets(const TargetStep& s, const float* __restrict above, const float* __restrict below,
-                   const float* __restrict top_above, const float* __restrict top_below, std::uint8_t* __restrict state) {
+void judge_targets(const TargetStep& s, const float* __restrict below, const float* __restrict top_below,
+                   std::int32_t* __restrict state) {
   const float first = s.edges.first, per_cell = 1 / s.edges.step, pad = s.pad;
-  const float low_first = s.drop_low.first, low_step = s.drop_low.step;
-  const float high_first = s.drop_high.first, high_step = s.drop_high.step;
-  const float eye_above = s.eye_above, eye_below = s.eye_below, largest = s.least, smallest = s.most;
-  const int last = s.wedges - 1, row0 = s.first_row, rows = s.rows;
+  const float drop_first = s.drop_low.first, drop_step = s.drop_low.step, eye = s.eye_below;
+  const float largest = s.least, smallest = s.most;
+  const int last = s.wedges - 1, row0 = s.first_row, rows = whole_vectors(s.rows);
   for (int j = 0; j < rows; ++j) {
     const float position = static_cast<float>(row0 + j) - first;
     const int a = within(static_cast<int>((position - pad) * per_cell), 0, last);
     const int b = within(static_cast<int>((position + pad) * per_cell), 0, last);
-    // Highest the target can stand out against the lower horizon, lowest against the upper one.
-    const float high = top_below[row0 + j] - (low_first + static_cast<float>(a) * low_step) - eye_below;
-    const float low = top_above[row0 + j] - (high_first + static_cast<float>(a) * high_step) - eye_above;
-    const float steepest = high * (high > 0 ? largest : smallest);
-    const float flattest = low * (low > 0 ? smallest : largest);
-    const float hides = least(below[a], below[b]), reaches = most(above[a], above[b]);
-    constexpr float kRounding = 1e-6f;  // relative; several float roundings of 6e-8
-    const bool hidden = hides > steepest + kRounding * (std::fabs(hides) + std::fabs(steepest));
-    const bool clear = reaches < flattest - kRounding * (std::fabs(reaches) + std::fabs(flattest));
-    state[j] = hidden ? kSurelyHidden : clear ? kClearBetween : kOpen;
+    // The highest the target can stand out against the lower horizon.
+    const float over = top_below[row0 + j] - (drop_first + static_cast<float>(a) * drop_step) - eye;
+    const float steepest = over * (over > 0 ? largest : smallest);
+    const float hides = least(below[a], below[b]);
+    const float hidden_above = steepest + kRounding * (std::fabs(hides) + std::fabs(steepest));
+    state[j] = hides > hidden_above ? kSurelyHidden : kOpen;
   }
 }
 

@@ -10,6 +10,10 @@
 
 namespace sightbound {
 
+// Counts are rounded up to whole vectors: arrays must be that long, and what lies behind their end is computed for nothing.
+inline constexpr int kVector = 16;
+constexpr int whole_vectors(int count) { return (count + kVector - 1) / kVector * kVector; }
+
 inline constexpr float kUnbounded = 1e30f;     // stands for infinity where a sum must stay finite
 inline constexpr float kPositionPad = 1e-3f;   // cells; float positions within a block are right to 1e-5
 
@@ -30,16 +34,30 @@ struct WedgeStep {
   float near_least = 0, far_most = 0, far_least = 0;  // 1 / tau at the columns: largest, smallest, largest
 };
 
+// What a column of terrain says to both horizons: z +- K sigma. NaN (no terrain) never lowers the upper one below `unknown`
+// and never raises the lower one.
+struct ColumnBounds {
+  int count = 0;
+  float full = 0, near_end = 0;  // uniform error: K sigma for the upper and for the lower bound, pads included
+  float ratio = 0;               // else K; times sigma from the arrays below
+  float unknown = kUnbounded;
+  float pad = 0;                 // metres
+  const float* sampling = nullptr;   // sigma_s; null = uniform
+  const float* between = nullptr;    // largest between-sample part
+  bool end_zone = false;             // the lower bound counts the between-sample part alone
+};
+void bound_column(const ColumnBounds&, const float* z, float* above, float* below);
+
 // above[i] = max(above[i], slope of the highest cell the wedge touches between the two columns). cells[j] is an upper bound
 // of z + K sigma over the cell from row j to j + 1.
 void raise_above(const WedgeStep&, const float* cells, float* above);
 // below[i] = max(below[i], slope of the lowest place of the far column within the wedge). line[j] is z - K sigma at row j,
 // linear between.
 void raise_below(const WedgeStep&, const float* line, float* below);
-// cells[j] = largest of the four corners.
-void highest_corners(int cells_count, const float* near, const float* far, float* cells);
+// cells[j] = largest of the four corners (j, j + 1 of both columns): the arrays are one longer than whole vectors.
+void highest_corners(int count, const float* near, const float* far, float* cells);
 
-enum TargetState : std::uint8_t { kSurelyHidden = 0, kOpen = 1, kClearBetween = 2 };
+enum TargetState : std::int32_t { kSurelyHidden = 0, kOpen = 1 };
 
 struct TargetStep {
   int first_row = 0, rows = 0;   // targets: rows [first_row, first_row + rows) of the arrays
@@ -51,9 +69,15 @@ struct TargetStep {
   float least = 0, most = 0;     // 1 / tau: largest, smallest
 };
 
-// state[j]: hidden when even the lower horizon hides a target at top_below[j]; clear when the upper horizon (which ends two
-// columns before the target) does not reach a target at top_above[j].
-void judge_targets(const TargetStep&, const float* above, const float* below, const float* top_above,
-                   const float* top_below, std::uint8_t* state);
+// The wedges a target in row j may lie in, first and last.
+struct WedgePair {
+  int a, b;
+};
+WedgePair wedges_of(const TargetStep&, int j);
+// The least slope at which a target at `top_above` in row j stands out, wedge `a` given.
+float flattest_slope(const TargetStep&, int a, float top_above);
+
+// state[j]: hidden when even the lower horizon hides a target that reaches up to top_below[j].
+void judge_targets(const TargetStep&, const float* below, const float* top_below, std::int32_t* state);
 
 }  // namespace sightbound

@@ -6,6 +6,9 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <type_traits>
+
+#include "base/big_memory.h"
 
 namespace sightbound {
 
@@ -47,9 +50,11 @@ inline Window bounding(const Window& a, const Window& b) {
 // Row-major cells, owned; moved, never copied by accident. Values are not initialised unless a fill is given.
 template <class T>
 class Grid {
+  static_assert(std::is_trivially_copyable_v<T>);
+
  public:
   Grid() = default;
-  Grid(int rows, int cols) : rows_(rows), cols_(cols), data_(std::make_unique_for_overwrite<T[]>(size())) {}
+  Grid(int rows, int cols) : rows_(rows), cols_(cols), data_(static_cast<T*>(allocate_big(size() * sizeof(T)))) {}
   Grid(int rows, int cols, T fill) : Grid(rows, cols) { std::fill_n(data_.get(), size(), fill); }
 
   int rows() const { return rows_; }
@@ -77,7 +82,10 @@ class Grid {
   std::size_t offset(int r) const { return static_cast<std::size_t>(r) * static_cast<std::size_t>(cols_); }
 
   int rows_ = 0, cols_ = 0;
-  std::unique_ptr<T[]> data_;
+  struct Release {
+    void operator()(T* data) const { release_big(data); }
+  };
+  std::unique_ptr<T[], Release> data_;
 };
 
 }  // namespace sightbound
