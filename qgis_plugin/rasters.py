@@ -35,7 +35,7 @@ def read_raster(algorithm, parameters, name, context, feedback, band_name=None):
         raise bad_input(
             band_name or name, tr("there is no band {}; the raster has {}.").format(band, layer.bandCount())
         )
-    cell = min(layer.rasterUnitsPerPixelX(), layer.rasterUnitsPerPixelY())
+    cell = min(abs(layer.rasterUnitsPerPixelX()), abs(layer.rasterUnitsPerPixelY()))
     path = _with_crs_of(layer, path, name, feedback)
     algorithm.paths[path] = name
     return Raster(path, band, layer.crs(), layer.extent(), cell)
