@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Write docs/qgis.md, the reference of the QGIS algorithms, from the algorithms themselves.
+"""Write docs/qgis_reference.md, the reference of the QGIS algorithms, from the algorithms themselves.
 
     PYTHONPATH=build/python:build/qgis_plugins /usr/bin/python3 scripts/write_qgis_reference.py
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from qgis.core import QgsProcessingParameterDefinition, QgsProcessingParameterEnum
 
-TARGET = Path(__file__).resolve().parent.parent / "docs" / "qgis.md"
+TARGET = Path(__file__).resolve().parent.parent / "docs" / "qgis_reference.md"
 HEAD = """# The QGIS algorithms
 
 Provider *Sightbound*, group *Visibility*. Written by `scripts/write_qgis_reference.py` from the algorithms; the same

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""docs/qgis.md says what the algorithms say."""
+"""docs/qgis_reference.md says what the algorithms say."""
 
 import importlib.util
 
@@ -15,7 +15,7 @@ def test_reference_is_up_to_date(provider):
     assert written == script.reference(provider), f"write it anew: {script.__doc__}"
 
 
-def test_help_links_lead_to_the_reference(provider):
+def test_help_links_lead_to_the_page_on_qgis(provider):
     text = (ROOT / "docs" / "qgis.md").read_text(encoding="utf-8")
     for name in ("confidenceviewshed", "errorsurfaces", "lineofsightprofile"):
         assert (

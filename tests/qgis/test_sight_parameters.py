@@ -57,7 +57,8 @@ def test_curvature_and_refraction(run, tmp_path):
 
     def seen(**parameters):
         results = run("confidenceviewshed", INPUT=str(dem), OBSERVER=observer, OBSERVER_HEIGHT=2.0,
-                      VERTICAL_ACCURACY=0.0, GEOLOGIC_VARIATION=0.0, OUTPUT=QgsProcessing.TEMPORARY_OUTPUT, **parameters)  # fmt: skip
+                      VERTICAL_ACCURACY=0.0, GEOLOGIC_VARIATION=0.0,
+                      OUTPUT=QgsProcessing.TEMPORARY_OUTPUT, **parameters)  # fmt: skip
         return (scenes.read(results["OUTPUT"])[0][1] > 0.5).sum() * 100.0
 
     assert seen(REFRACTION=0.0) == pytest.approx(numpy.sqrt(2 * 6.37e6 * 2.0), rel=0.05)
