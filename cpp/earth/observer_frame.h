@@ -60,6 +60,7 @@ class GeodesicPath {
   double chord(double xi) const { return minor0_ + xi * minor_span_; }
   double largest_bow() const { return bow_.size() / 4; }
   double largest_stretch() const { return stretch_.size() / 4; }
+  const NodePolynomial& bow() const { return bow_; }
 
  private:
   friend class ObserverFrame;

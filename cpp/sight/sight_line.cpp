@@ -6,9 +6,12 @@
 #include "sight/sight_line.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "sight/search_kernel.h"
 
 namespace sightbound {
 
@@ -25,23 +28,40 @@ constexpr double kStraightStep = 1e-8;
 constexpr double kStraightEnough = 0.25;
 // A place nearer to an end than this many larger cell sides is the end itself: what is left of the clearance there is rounding.
 constexpr double kAtEnd = 1e-4;
+constexpr int kScanLevel = MaxPyramid::kFinest + 4;  // its nodes hold kScan of the finest
+constexpr float kScanPad = 1e-3f;                      // cells
 constexpr std::array kEndPlaces{1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 3.0 / 4};  // larger cell sides from an end
 
-// The terrain at a place: up to three samples with weights; those of weight 0 are left out.
-struct Stencil {
-  std::array<std::ptrdiff_t, 3> sample;
-  std::array<double, 3> weight;
-  int count = 0;
+// The floor of values that fit an int; std::floor is a call on the plainest processors.
+inline int whole(double value) {
+  const int i = static_cast<int>(value);
+  return i - (static_cast<double>(i) > value);
+}
 
-  void add(std::ptrdiff_t s, double w) {
-    if (w == 0) return;
-    sample[static_cast<std::size_t>(count)] = s;
-    weight[static_cast<std::size_t>(count++)] = w;
+// The terrain at a place: up to three samples with weights. Those of weight 0 do not count, NaN or not: in their stead a
+// sample that does is named.
+struct Stencil {
+  std::array<std::ptrdiff_t, 3> sample{};
+  std::array<double, 3> weight{};
+
+  // A share f of the way from a to b.
+  static Stencil edge(std::ptrdiff_t a, std::ptrdiff_t b, double f) {
+    if (f == 0) b = a;
+    if (f == 1) a = b;
+    return {{a, b, b}, {1 - f, f, 0}};
   }
+  static Stencil triangle(const std::array<std::ptrdiff_t, 3>& samples, const std::array<double, 3>& weights) {
+    Stencil stencil{samples, weights};
+    const std::size_t counts = weights[0] != 0 ? 0 : weights[1] != 0 ? 1 : 2;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (weights[i] == 0) stencil.sample[i] = samples[counts];
+    }
+    return stencil;
+  }
+
   double of(const float* values) const {
-    double value = 0;
-    for (int i = 0; i < count; ++i) value += weight[static_cast<std::size_t>(i)] * static_cast<double>(values[sample[static_cast<std::size_t>(i)]]);
-    return value;
+    return weight[0] * static_cast<double>(values[sample[0]]) + weight[1] * static_cast<double>(values[sample[1]]) +
+           weight[2] * static_cast<double>(values[sample[2]]);
   }
   double of(const SampleField& field) const {
     return field.is_constant() ? static_cast<double>(field.constant()) : of(field.values().data());
@@ -62,11 +82,9 @@ class SightLine::LeastRatio {
   bool take(double, double clearance, double sigma) { return lower(clearance / sigma); }
   bool take_unknown() { return lower(0); }
   bool unknown_matters() const { return best_ > 0; }
-  // Nothing in a stretch whose lines stay above `line_low` and terrain below `z` beats this.
-  bool excludes(double, double, double line_low, double z, double sigma_max, double sigma_min) const {
-    const double clearance = line_low - z;
-    return clearance >= 0 ? clearance >= best_ * sigma_max + kSlack : clearance >= best_ * sigma_min + kSlack;
-  }
+  // What a place must do to matter: leave the line to a target of this height less than this many sigma of clearance.
+  double target_height() const { return line_.target_height_; }
+  double ratio() const { return best_; }
 
  private:
   bool lower(double k) {
@@ -95,11 +113,8 @@ class SightLine::NeededHeight {
   }
   bool take_unknown() { return k_ > 0 && raise(kInfinity); }
   bool unknown_matters() const { return k_ > 0; }
-  bool excludes(double t_low, double t_high, double, double z, double sigma_max, double) const {
-    const double over = z + k_ * sigma_max - line_.eye_height_;
-    const double needed = line_.eye_height_ + over / (over > 0 ? t_low : t_high) + line_.drop_ * (1 - t_low);
-    return needed + kSlack <= best_;
-  }
+  double target_height() const { return best_; }
+  double ratio() const { return k_; }
 
  private:
   bool raise(double height) {
@@ -148,17 +163,17 @@ class SightLine::Search {
     step(line_.span_ > 0 ? last_ : first_);
     if (objective_.done()) return;
     if (hint > 0 && hint < 1) {
-      const int near = static_cast<int>(std::floor(line_.major0_ + hint * line_.span_)) + line_.base_major_;
+      const int near = whole(line_.major0_ + hint * line_.span_) + line_.base_major_;
       step(std::clamp(near, first_, last_));
     }
     for (const MajorRange& range : ranges) {
       from_ = std::max(range.from, first_);
       to_ = std::min(range.to - 1, last_);
       if (from_ > to_) continue;
-      int level = MaxPyramid::kFinest;
-      while (level < scene_.highest.coarsest() && (from_ >> level) != (to_ >> level)) ++level;
+      int level = std::min(kScanLevel, scene_.highest.coarsest());
+      while (level < scene_.highest.coarsest() && (to_ >> level) - (from_ >> level) > 1) ++level;
       for (int node = from_ >> level; node <= to_ >> level && !objective_.done(); ++node) {
-        if (!excluded(level, node)) descend(level, node);
+        if ((level == kScanLevel && can_scan()) || !excluded(level, node)) descend(level, node);
       }
     }
     if (!objective_.done()) end_places();
@@ -185,7 +200,7 @@ class SightLine::Search {
   }
   // The cell that holds w, in the scene's grid.
   int cell_of(double w) const {
-    return std::clamp(static_cast<int>(std::floor(w)) + line_.base_minor_, 0, line_.minors_ - 2);
+    return std::clamp(whole(w) + line_.base_minor_, 0, line_.minors_ - 2);
   }
 
   // ---- bounding -------------------------------------------------------------------------------------------------
@@ -214,12 +229,50 @@ class SightLine::Search {
     return {t_low, t_high, std::min(w_a, w_b) - pad, std::max(w_a, w_b) + pad, low};
   }
 
+  // Nothing in a stretch whose terrain stays below z matters.
   bool excludes(const Stretch& s, double z, double sigma_max) const {
     if (s.t_low <= 0) return false;
     const bool in_end_zone =
         s.t_low * line_.distance_ < scene_.end_zone_m || (1 - s.t_high) * line_.distance_ < scene_.end_zone_m;
-    return objective_.excludes(s.t_low, s.t_high, s.line_low, z, sigma_max, in_end_zone ? kLeastSigma : scene_.least_sigma);
+    const double ratio = objective_.ratio();
+    const double sigma = ratio > 0 ? sigma_max : in_end_zone ? kLeastSigma : scene_.least_sigma;
+    return s.line_low - z >= ratio * sigma + kSlack;
   }
+
+  // Sixteen finest nodes at once, from `first` on. Holes need the nodes one by one.
+  bool can_scan() const { return !scene_.highest.any_hole() || scene_.see_across_nodata; }
+  void scan(int first) {
+    const Grid<float>& finest = scene_.highest.finest();
+    NodeScan s;
+    const std::size_t at = static_cast<std::size_t>(first) * static_cast<std::size_t>(line_.transposed_ ? finest.cols() : 1);
+    s.highest = finest.data() + at;
+    s.widest = scene_.uniform ? nullptr : scene_.widest.finest().data() + at;
+    s.major_stride = line_.transposed_ ? finest.cols() : 1;
+    s.minor_stride = line_.transposed_ ? 1 : finest.cols();
+    s.minors = line_.minors_;
+    s.xi = static_cast<float>(xi_of(m_of(first << MaxPyramid::kFinest)));
+    s.xi_step = static_cast<float>((1 << MaxPyramid::kFinest) * per_span_);
+    s.minor0 = static_cast<float>(line_.path_.chord(0) + line_.base_minor_);
+    s.minor_span = static_cast<float>(line_.path_.chord(1) - line_.path_.chord(0));
+    s.terms = line_.path_.bow().terms;
+    for (std::size_t t = 0; t < s.bow.size(); ++t) s.bow[t] = static_cast<float>(line_.path_.bow().c[t]);
+    const double step = (1 << MaxPyramid::kFinest) * per_span_;
+    s.minor_pad = static_cast<float>(bow_ * step * step / 8 + 4e-7 * (line_.minors_ + 4 * bow_size_)) + kScanPad;
+    s.share_pad = static_cast<float>(stretch_size_ + 1e-6);
+    s.rise = static_cast<float>(objective_.target_height() - line_.eye_height_);
+    s.drop = static_cast<float>(line_.drop_);
+    s.eye = static_cast<float>(line_.eye_height_);
+    s.height_pad = static_cast<float>(1e-3 + 1e-6 * (std::abs(s.rise) + s.drop + std::abs(s.eye) + 1e4));
+    s.rim = static_cast<float>(kRim / 2);
+    s.ratio = static_cast<float>(objective_.ratio());
+    s.uniform = static_cast<float>(scene_.least_sigma);
+    s.ends = static_cast<float>(ends_most());
+    s.least_sigma = static_cast<float>(scene_.least_sigma);
+    s.end_zone_sigma = static_cast<float>(kLeastSigma);
+    s.end_zone_share = static_cast<float>(scene_.end_zone_m / line_.distance_ + 1e-6);
+    scan_nodes(s, matters_.data());
+  }
+  double ends_most() const { return scene_.ends_move ? std::max(line_.eye_sampling_, line_.target_sampling_) : 0; }
 
   bool excluded(int level, int node) {
     const Stretch part = stretch(std::max(low_, m_of(std::max(node << level, from_))),
@@ -237,8 +290,7 @@ class SightLine::Search {
       sigma_cap_ = kInfinity;
       return false;
     }
-    const double ends_most = scene_.ends_move ? std::max(line_.eye_sampling_, line_.target_sampling_) : 0;
-    sigma_cap_ = (scene_.uniform ? scene_.least_sigma : static_cast<double>(sigma)) + ends_most;
+    sigma_cap_ = (scene_.uniform ? scene_.least_sigma : static_cast<double>(sigma)) + ends_most();
     return excludes(part, static_cast<double>(z), sigma_cap_);
   }
 
@@ -256,7 +308,7 @@ class SightLine::Search {
     return excludes(part, static_cast<double>(z), sigma_cap_);
   }
 
-  // To be called right after excluded() for the same node.
+  // For the finest level to be called right after excluded() for the same node.
   void descend(int level, int node) {
     if (objective_.done()) return;
     if (level == MaxPyramid::kFinest) {
@@ -266,6 +318,21 @@ class SightLine::Search {
       }
       sigma_cap_ = kInfinity;
       return;
+    }
+    if (level == kScanLevel && can_scan()) {
+      const int nodes = scene_.highest.finest_nodes(line_.transposed_), first = std::min(node * kScan, std::max(nodes - kScan, 0));
+      if (nodes >= kScan) {
+        scan(first);
+        const int from = from_ >> MaxPyramid::kFinest, to = to_ >> MaxPyramid::kFinest;
+        for (int i = 0; i < kScan && !objective_.done(); ++i) {
+          const int fine = line_.span_ > 0 ? first + kScan - 1 - i : first + i;
+          const bool mine = fine >= std::max(from, node * kScan) && fine <= std::min(to, node * kScan + kScan - 1);
+          if (mine && matters_[static_cast<std::size_t>(fine - first)] != 0 && !excluded(MaxPyramid::kFinest, fine)) {
+            descend(MaxPyramid::kFinest, fine);
+          }
+        }
+        return;
+      }
     }
     // The end nearer to the target first: on rising ground it decides more often.
     const int child = line_.span_ > 0 ? 2 * node + 1 : 2 * node;
@@ -303,7 +370,7 @@ class SightLine::Search {
     for (const bool diagonal : {false, true}) {
       const double g_a = diagonal ? w_a - m_a : w_a, g_b = diagonal ? w_b - m_b : w_b;
       const double g_low = std::min(g_a, g_b), g_high = std::max(g_a, g_b);
-      for (double g = std::floor(g_low) + 1; g < g_high; ++g) {
+      for (double g = whole(g_low) + 1; g < g_high; ++g) {
         double m = m_a + (g - g_a) / (g_b - g_a) * (m_b - m_a);
         if (curved_) {  // one Newton step from the chord of the step
           const double slope = line_.path_.minor_slope(xi_of(m)) / line_.span_ - (diagonal ? 1 : 0);
@@ -321,10 +388,7 @@ class SightLine::Search {
   void column(int s, double w, const Visitor& visit) {
     const int j = cell_of(w);
     const double f = inside(w) - (j - line_.base_minor_);
-    Stencil stencil;
-    stencil.add(sample(s, j), 1 - f);
-    stencil.add(sample(s, j + 1), f);
-    visit(stencil, is_outside(w), spacing(s, j, 0, std::min(f, 1 - f)), xi_of(m_of(s)));
+    visit(Stencil::edge(sample(s, j), sample(s, j + 1), f), is_outside(w), spacing(s, j, 0, std::min(f, 1 - f)), xi_of(m_of(s)));
   }
 
   // Where the line meets the edge from sample (s, j) to (s + 1, j), or to (s + 1, j + 1), a share f along it.
@@ -335,10 +399,7 @@ class SightLine::Search {
     // A line that follows the rim from without meets the diagonals there at their one sample.
     const bool outside = !(before || f >= 1 - kRim) || !(beyond || f <= kRim);
     Stencil stencil;
-    if (!outside) {
-      stencil.add(before ? sample(s, j) : sample(s + 1, next), 1 - f);
-      stencil.add(beyond ? sample(s + 1, next) : sample(s, j), f);
-    }
+    if (!outside) stencil = Stencil::edge(before ? sample(s, j) : sample(s + 1, next), beyond ? sample(s + 1, next) : sample(s, j), f);
     const double nearest = std::min(f, 1 - f);
     visit(stencil, outside, outside ? 0 : spacing(s, std::max(j, 0), nearest, diagonal ? nearest : 0), xi);
   }
@@ -354,16 +415,11 @@ class SightLine::Search {
       for (int i = 0; i < 3; ++i) xi -= line_.path_.share(xi) - t;  // the share differs from xi by little, and smoothly
     }
     const double m = line_.major0_ + xi * line_.span_, w = line_.path_.minor(xi);
-    const int i = std::clamp(static_cast<int>(std::floor(m)) + line_.base_major_, 0, line_.majors_ - 2), j = cell_of(w);
+    const int i = std::clamp(whole(m) + line_.base_major_, 0, line_.majors_ - 2), j = cell_of(w);
     const double fm = std::clamp(m - m_of(i), 0.0, 1.0), fw = inside(w) - (j - line_.base_minor_);
-    Stencil stencil;
-    stencil.add(sample(i, j), 1 - std::max(fm, fw));
-    if (fm >= fw) {
-      stencil.add(sample(i + 1, j), fm - fw);
-    } else {
-      stencil.add(sample(i, j + 1), fw - fm);
-    }
-    stencil.add(sample(i + 1, j + 1), std::min(fm, fw));
+    const std::ptrdiff_t corner = fm >= fw ? sample(i + 1, j) : sample(i, j + 1);
+    const Stencil stencil = Stencil::triangle({sample(i, j), corner, sample(i + 1, j + 1)},
+                                              {1 - std::max(fm, fw), std::abs(fm - fw), std::min(fm, fw)});
     visit(stencil, is_outside(w), spacing(i, j, std::min(fm, 1 - fm), std::min(fw, 1 - fw)), xi);
   }
 
@@ -430,6 +486,7 @@ class SightLine::Search {
   double bow_, bow_size_, stretch_size_;
   double sigma_cap_ = kInfinity;  // no sigma of the places at hand is larger
   bool curved_;
+  std::array<std::int32_t, kScan> matters_{};
   double low_, high_, per_span_;
   double at_end_;  // share of the distance
   int first_, last_;      // steps of the line, in the scene's grid

@@ -26,6 +26,24 @@ inline void Canvas::put(int row, int col, float p, std::uint8_t claim) {
   if (claim == kVisible) ++n;
 }
 
+void Canvas::hide(int row, int col, int run, bool along_row) {
+  if (!fresh_ || !count.empty()) {
+    for (int i = 0; i < run; ++i) put(along_row ? row : row + i, along_row ? col + i : col, 0, kHidden);
+    return;
+  }
+  float* p = &confidence.at(row - window_.row, col - window_.col);
+  std::uint8_t* claim = &verdict.at(row - window_.row, col - window_.col);
+  if (along_row) {
+    std::fill_n(p, run, 0.0f);
+    std::fill_n(claim, run, kHidden);
+    return;
+  }
+  for (int i = 0; i < run; ++i, p += window_.cols, claim += window_.cols) {
+    *p = 0;
+    *claim = kHidden;
+  }
+}
+
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -57,8 +75,11 @@ class Painter {
       const int row = column.transposed ? column.major : minor, col = column.transposed ? minor : column.major;
       const bool hidden = column.state[i] == kSurelyHidden;
       if (plain && hidden) {
-        canvas_.put(row, col, 0, kHidden);
-        totals_.hidden_m2 += area(row);
+        int run = 1;
+        while (i + run < to && column.state[i + run] == kSurelyHidden) ++run;
+        canvas_.hide(row, col, run, column.transposed);
+        for (int r = 0; r < run; ++r) totals_.hidden_m2 += area(column.transposed ? row : row + r);
+        i += run - 1;
         continue;
       }
       if (std::isnan(scene_.heights.at(row, col)) || (by_place && !asked(row, col))) continue;

@@ -42,6 +42,8 @@ class Canvas {
   void next_observer() { fresh_ = false; }
 
   void put(int row, int col, float p, std::uint8_t verdict);
+  // The same for a run of hidden cells along a row or down a column.
+  void hide(int row, int col, int run, bool along_row);
   void put_heights(int row, int col, float certain, float likely);
   // Counts the observers that claim visible; before it is called only the verdict knows of a single one.
   void start_counting();

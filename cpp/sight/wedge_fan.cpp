@@ -13,7 +13,7 @@ namespace sightbound {
 
 namespace {
 
-constexpr int kBlocksPerUnit = 16;    // blocks per unit of slope: enough tasks for many threads, enough wedges for vectors
+constexpr int kBlocksPerUnit = 32;    // blocks per unit of slope: enough tasks for many threads, enough wedges for vectors
 constexpr int kLeastWedges = kVector;  // per block
 constexpr double kWedgesPerCell = 1;  // at least so many wedges cross a cell side
 constexpr int kLeastPart = 32;        // columns an upper horizon stands for, at least

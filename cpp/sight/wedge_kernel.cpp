@@ -4,12 +4,8 @@
 #include <cmath>
 
 #include "error_model/error_model.h"
+#include "sight/vector.h"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(SIGHTBOUND_SCALAR)
-#define SIGHTBOUND_VECTOR __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define SIGHTBOUND_VECTOR
-#endif
 
 namespace sightbound {
 
@@ -17,8 +13,6 @@ namespace {
 
 constexpr float kRounding = 1e-6f;  // relative; several float roundings of 6e-8
 
-inline float least(float a, float b) { return a < b ? a : b; }
-inline float most(float a, float b) { return a > b ? a : b; }
 inline int within(int value, int low, int high) {
   value = value < low ? low : value;
   return value > high ? high : value;
@@ -41,8 +35,8 @@ void bound_column(const ColumnBounds& c, const float* __restrict z, float* __res
   const float* __restrict between = c.between;
   const float counted = c.end_zone ? 0.0f : 1.0f, floor = static_cast<float>(kLeastSigma);
   for (int j = 0; j < count; ++j) {
-    const float wide = ratio * most(sampling[j] + between[j], floor) + pad;
-    const float narrow = ratio * most(counted * sampling[j] + between[j], floor) + pad;
+    const float wide = ratio * larger(sampling[j] + between[j], floor) + pad;
+    const float narrow = ratio * larger(counted * sampling[j] + between[j], floor) + pad;
     above[j] = z[j] == z[j] ? z[j] + wide : unknown;
     below[j] = z[j] == z[j] ? z[j] - narrow : -kUnbounded;
   }
@@ -56,14 +50,14 @@ void raise_above(const WedgeStep& s, const float* __restrict cells, float* __res
   const int wedges = whole_vectors(s.wedges), last = s.rows - 2;
   for (int i = 0; i < wedges; ++i) {
     const float k = static_cast<float>(i), k1 = k + 1;
-    const float low = least(near_first + k * near_step, far_first + k * far_step) - pad;
-    const float high = most(near_first + k1 * near_step, far_first + k1 * far_step) + pad;
+    const float low = smaller(near_first + k * near_step, far_first + k * far_step) - pad;
+    const float high = larger(near_first + k1 * near_step, far_first + k1 * far_step) + pad;
     const int a = within(static_cast<int>(low), 0, last), b = within(static_cast<int>(high), 0, last);
     const int middle = a + 1 < b ? a + 1 : b;
-    const float top = most(most(cells[a], cells[b]), cells[middle]);
+    const float top = larger(larger(cells[a], cells[b]), cells[middle]);
     const float over = top - (drop_first + k * drop_step) - eye;
     const float slope = over * (over > 0 ? rising : falling);
-    above[i] = most(above[i], slope);
+    above[i] = larger(above[i], slope);
   }
 }
 
@@ -79,18 +73,18 @@ void raise_below(const WedgeStep& s, const float* __restrict line, float* __rest
     const int a = within(static_cast<int>(low), 0, last), b = within(static_cast<int>(high), 0, last);
     const float at_low = line[a] + (line[a + 1] - line[a]) * (low - static_cast<float>(a));
     const float at_high = line[b] + (line[b + 1] - line[b]) * (high - static_cast<float>(b));
-    const float inner = b > a ? least(line[a + 1], line[b]) : kUnbounded;
-    const float bottom = least(least(at_low, at_high), inner);
+    const float inner = b > a ? smaller(line[a + 1], line[b]) : kUnbounded;
+    const float bottom = smaller(smaller(at_low, at_high), inner);
     const float over = bottom - (drop_first + k * drop_step) - eye;
     const float slope = over * (over > 0 ? rising : falling);
-    below[i] = most(below[i], slope);
+    below[i] = larger(below[i], slope);
   }
 }
 
 SIGHTBOUND_VECTOR
 void highest_corners(int count, const float* __restrict near, const float* __restrict far, float* __restrict cells) {
   const int whole = whole_vectors(count);
-  for (int j = 0; j < whole; ++j) cells[j] = most(most(near[j], near[j + 1]), most(far[j], far[j + 1]));
+  for (int j = 0; j < whole; ++j) cells[j] = larger(larger(near[j], near[j + 1]), larger(far[j], far[j + 1]));
 }
 
 WedgePair wedges_of(const TargetStep& s, int j) {
@@ -119,7 +113,7 @@ void judge_targets(const TargetStep& s, const float* __restrict below, const flo
     // The highest the target can stand out against the lower horizon.
     const float over = top_below[row0 + j] - (drop_first + static_cast<float>(a) * drop_step) - eye;
     const float steepest = over * (over > 0 ? largest : smallest);
-    const float hides = least(below[a], below[b]);
+    const float hides = smaller(below[a], below[b]);
     const float hidden_above = steepest + kRounding * (std::fabs(hides) + std::fabs(steepest));
     state[j] = hides > hidden_above ? kSurelyHidden : kOpen;
   }

@@ -28,6 +28,8 @@ class MaxPyramid {
   int coarsest() const { return kFinest + static_cast<int>(max_.size()) - 1; }
   // Lowest float where a node holds no sample but NaN.
   float max(int level, int row, int col) const { return max_[static_cast<std::size_t>(level - kFinest)].at(row, col); }
+  const Grid<float>& finest() const { return max_.front(); }
+  int finest_nodes(bool rows) const { return rows ? finest().rows() : finest().cols(); }
   bool any_hole() const { return !holes_.empty(); }
   bool has_hole(int level, int row, int col) const {
     return any_hole() && holes_[static_cast<std::size_t>(level - kFinest)].at(row, col) != 0;
