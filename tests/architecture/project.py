@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-_NOT_OURS = {".git", "build", "demo_output", "__pycache__", ".cache", ".hypothesis", ".pytest_cache"}
+_NOT_OURS = {".git", "build", "demo_output", "__pycache__", ".cache", ".hypothesis", ".pytest_cache", ".ruff_cache"}
 _BINARY = {".gpkg", ".png", ".tif"}
 
 
@@ -38,4 +38,4 @@ def _all():
     else:
         paths = [p for p in ROOT.rglob("*") if not any(
             part in _NOT_OURS or part.startswith("build-") for part in p.relative_to(ROOT).parts)]
-    return sorted(path for path in paths if path.is_file())
+    return sorted(path for path in paths if path.is_file() and not path.name.endswith(".aux.xml"))
