@@ -75,6 +75,32 @@ TEST_F(ReadingTest, MosaicsAreReadThroughTheirParts) {
   expect_same(dem->read(dem->window(), progress), spec.values, dem->window());
 }
 
+TEST_F(ReadingTest, SeveralJobsReadOneDem) {
+  const RasterFileSpec spec = large({"TILED=YES", "COMPRESS=DEFLATE"});
+  const auto dem = open_dem(make_raster(spec, path("large.tif")));
+  std::vector<std::thread> jobs;
+  for (const Window& window : {dem->window(), Window{200, 300, 700, 800}, Window{0, 0, 40, 1300}}) {
+    jobs.emplace_back([&, window] {
+      Progress progress;
+      expect_same(dem->read(window, progress), spec.values, window);
+      EXPECT_EQ(dem->notes().size(), 0u);
+    });
+  }
+  for (std::thread& job : jobs) job.join();
+}
+
+TEST_F(ReadingTest, AWaitingJobCanBeCancelled) {
+  const auto dem = open_dem(make_raster(large({"TILED=YES", "COMPRESS=DEFLATE"}), path("large.tif")));
+  Progress first([&](double) {
+    std::thread([&] {
+      Progress second([](double) { return false; });
+      EXPECT_THROW(dem->read(dem->window(), second), Cancelled);
+    }).join();
+    return true;
+  });
+  EXPECT_NO_THROW(dem->read(dem->window(), first));
+}
+
 TEST_F(ReadingTest, CancelsBetweenChunks) {
   const auto dem = open_dem(make_raster(large({"TILED=YES", "COMPRESS=DEFLATE"}), path("large.tif")));
   const std::thread::id caller = std::this_thread::get_id();
