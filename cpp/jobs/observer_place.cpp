@@ -108,6 +108,30 @@ Window reach_of(const DemSource& source, const Georeference& georeference, const
   return intersection({place.base_col - across, rows.row, 2 * across + 2, rows.rows}, all);
 }
 
+Window samples_within(const ObserverFrame& frame, const GridPlace& place, const Window& reach, double distance_m) {
+  Window w = reach;
+  const auto near = [&](int col, int row) {
+    return frame.at(col - place.base_col, row - place.base_row).distance() <= distance_m;
+  };
+  const auto row_is_near = [&](int row) {
+    for (int col = w.col; col < w.col_end(); ++col) {
+      if (near(col, row)) return true;
+    }
+    return false;
+  };
+  const auto col_is_near = [&](int col) {
+    for (int row = w.row; row < w.row_end(); ++row) {
+      if (near(col, row)) return true;
+    }
+    return false;
+  };
+  while (w.rows > 1 && !row_is_near(w.row)) ++w.row, --w.rows;
+  while (w.rows > 1 && !row_is_near(w.row_end() - 1)) --w.rows;
+  while (w.cols > 1 && !col_is_near(w.col)) ++w.col, --w.cols;
+  while (w.cols > 1 && !col_is_near(w.col_end() - 1)) --w.cols;
+  return w;
+}
+
 ObserverFrame frame_of(const Georeference& georeference, const GridPlace& place, const Window& reach) {
   return ObserverFrame(from_base(georeference, place), place.col, place.row, from_base(reach, place));
 }

@@ -32,6 +32,9 @@ GridPlace place_on(const DemSource&, double x, double y, const std::string& name
 // All samples within `distance_m` of the place (and some more), in the whole raster.
 Window reach_of(const DemSource&, const Georeference&, const GridPlace&, double distance_m);
 
+// The smallest part of `reach` that holds every sample within `distance_m`.
+Window samples_within(const ObserverFrame&, const GridPlace&, const Window& reach, double distance_m);
+
 // The observer's frame over `reach` (whole raster), in coordinates from his base sample: a function of place and reach.
 ObserverFrame frame_of(const Georeference&, const GridPlace&, const Window& reach);
 // The same as rings, a function of place and raster alone as far as they reach.

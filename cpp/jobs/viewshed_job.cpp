@@ -36,6 +36,7 @@ std::vector<Post> place_observers(const DemSource& source, const Georeference& g
                                   const std::vector<Observer>& observers, const std::optional<Extent>& extent,
                                   Progress& progress) {
   const Window asked = window_of(extent, source);
+  const double larger_side = larger_cell_side(georeference, source.rows(), source.cols());
   std::vector<Post> posts;
   posts.reserve(observers.size());
   for (std::size_t i = 0; i < observers.size(); ++i) {
@@ -43,9 +44,11 @@ std::vector<Post> place_observers(const DemSource& source, const Georeference& g
     const std::string name = name_of(o, i);
     validate(o, name);
     const GridPlace place = place_on(source, o.x, o.y, name);
-    const Window reach = reach_of(source, georeference, place, o.max_distance);
+    const Window around = reach_of(source, georeference, place, o.max_distance);
+    ObserverFrames frames = frames_of(source, georeference, place, around);
+    const double limit = o.max_distance + kOnTheLimit * larger_side;
+    const Window reach = samples_within(frames.widest(), place, around, limit);
     const Window targets = intersection(reach, asked);
-    ObserverFrames frames = frames_of(source, georeference, place, reach);
     const Window lines = targets.empty() ? Window{place.base_col, place.base_row, 1, 1} : lines_window(source, frames.widest(), place, targets);
     posts.push_back({o, name, place, reach, targets, lines, std::move(frames)});
     progress.check();

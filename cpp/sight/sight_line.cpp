@@ -160,7 +160,9 @@ class SightLine::Search {
 
   // First where lines are most often decided: right before the target, and where a neighbour's was.
   void within(std::span<const MajorRange> ranges, double hint) {
-    step(line_.span_ > 0 ? last_ : first_);
+    const int target = line_.span_ > 0 ? last_ : first_, before = line_.span_ > 0 ? last_ - 1 : first_ + 1;
+    step(target);
+    if (!objective_.done() && before >= first_ && before <= last_) step(before);
     if (objective_.done()) return;
     if (hint > 0 && hint < 1) {
       const int near = whole(line_.major0_ + hint * line_.span_) + line_.base_major_;

@@ -108,7 +108,7 @@ class Painter {
 
  private:
   static constexpr double kReportEvery = 4096;  // cells; a fraction of a millisecond, tens of them when all are settled
-  static constexpr double kSettleCost = 30;     // in cells, for the pace of the progress alone
+  static constexpr double kSettleCost = 5;      // in cells, for the pace of the progress alone
 
   Target target(int row, int col) const {
     return {static_cast<double>(col - view_.eye.base_col), static_cast<double>(row - view_.eye.base_row),

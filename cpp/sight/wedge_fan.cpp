@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -13,11 +14,11 @@ namespace sightbound {
 
 namespace {
 
-constexpr int kBlocksPerUnit = 32;    // blocks per unit of slope: enough tasks for many threads, enough wedges for vectors
+constexpr int kBlocksPerUnit = 16;    // blocks per unit of slope: enough tasks for many threads, enough wedges for vectors
 constexpr int kLeastWedges = kVector;  // per block
 constexpr double kWedgesPerCell = 1;  // at least so many wedges cross a cell side
-constexpr int kLeastPart = 32;        // columns an upper horizon stands for, at least
-constexpr int kMostParts = 64;
+constexpr int kLeastPart = 16;        // columns an upper horizon stands for, at least
+constexpr int kMostParts = 128;
 constexpr double kFirstBelow = 0.5;   // steps from the observer where the lower horizon begins
 constexpr double kFirstAbove = 2;     // ... and the upper one: nearer, a corner's slope says nothing
 constexpr double kInterpolation = 2;  // safety on the error of interpolating between two geodesics, measured half way
@@ -319,9 +320,16 @@ class WedgeFan::March {
     raise_below(step, column.below.data(), below_.data());
   }
 
+  // Parts are short near the observer, where an upper horizon is loose and should not speak for many columns.
+  int part_number(int major) const {
+    const auto steps = static_cast<unsigned>(std::abs(major - static_cast<int>(std::floor(major0_))));
+    if (steps >= static_cast<unsigned>(part_length_)) return static_cast<int>(steps) / part_length_;
+    return static_cast<int>(std::bit_width(steps)) - std::numeric_limits<unsigned>::digits;
+  }
+
   void raise(const ColumnPlace& near, const ColumnPlace& here, const Column& near_column, const Column& column) {
     if (near.step < kFirstAbove) return;
-    const int number = std::abs(here.major - static_cast<int>(std::floor(major0_))) / part_length_;
+    const int number = part_number(here.major);
     if (parts_.empty() || parts_.back().number != number) {
       parts_.push_back({number, near.major, near.major, std::vector<float>(static_cast<std::size_t>(wedges_), -kUnbounded)});
     }
