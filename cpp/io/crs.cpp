@@ -196,16 +196,46 @@ Georeference plane_of_local_crs(PJ_CONTEXT* context, PJ* horizontal, const std::
 
 }  // namespace
 
-void refuse_degrees_without_crs(const Geotransform& geotransform, int rows, int cols) {
+namespace {
+
+bool looks_like_degrees(const Geotransform& geotransform, int rows, int cols) {
   constexpr double kLargestCell = 0.1;  // degrees; coarser global grids are no DEMs one looks around in
   const auto& g = geotransform.coefficients();
-  if (std::hypot(g[1], g[4]) >= kLargestCell || std::hypot(g[2], g[5]) >= kLargestCell) return;
+  if (std::hypot(g[1], g[4]) >= kLargestCell || std::hypot(g[2], g[5]) >= kLargestCell) return false;
   for (const double row : {0.0, rows - 1.0}) {
     for (const double col : {0.0, cols - 1.0}) {
       const Xy p = geotransform.of_sample(col, row);
-      if (std::abs(p.x) > 360 || std::abs(p.y) > 90) return;
+      if (std::abs(p.x) > 360 || std::abs(p.y) > 90) return false;
     }
   }
+  return true;
+}
+
+// A projected CRS given to a raster in degrees makes cells of millimetres, far from where the CRS is meant
+// for.
+void refuse_degrees_as_lengths(PJ_CONTEXT* context, PJ* horizontal, const DemSource& dem,
+                               const Georeference& georeference) {
+  if (proj_get_type(horizontal) != PJ_TYPE_PROJECTED_CRS) return;
+  if (!looks_like_degrees(dem.geotransform(), dem.rows(), dem.cols())) return;
+  double west = 0, south = 0, east = 0, north = 0;
+  const char* area = nullptr;
+  if (!proj_get_area_of_use(context, horizontal, &west, &south, &east, &north, &area) || west < -360) return;
+  const LonLat middle = georeference.lon_lat((dem.cols() - 1) / 2.0, (dem.rows() - 1) / 2.0);
+  const double beyond_west = std::fmod(std::fmod(middle.lon - west, 360) + 360, 360);
+  const double width = std::fmod(std::fmod(east - west, 360) + 360, 360);
+  if (beyond_west <= width && middle.lat >= south && middle.lat <= north) return;
+  const char* name = proj_get_name(horizontal);
+  throw InvalidInput(
+      "The DEM's coordinates look like degrees (within 360 and 90, cells below 0.1), but its CRS '" +
+      std::string(name != nullptr ? name : "") +
+      "' measures lengths and is not meant for the place they would be. Assign the right CRS, EPSG:4326 for "
+      "example.");
+}
+
+}  // namespace
+
+void refuse_degrees_without_crs(const Geotransform& geotransform, int rows, int cols) {
+  if (!looks_like_degrees(geotransform, rows, cols)) return;
   throw InvalidInput(
       "The DEM has no CRS and its coordinates look like degrees (within 360 and 90, cells below 0.1): as "
       "metres its "
@@ -234,9 +264,13 @@ Georeference georeference_of(const DemSource& dem) {
   const Ellipsoid ellipsoid = ellipsoid_of(context.get(), parts.horizontal.get(), crs);
   ToGeographic model = to_geographic(context.get(), parts.horizontal.get());
   if (!model.transformation) refuse(crs, "cannot be converted to longitude and latitude");
-  auto pool = std::make_shared<LonLatPool>(std::move(context), std::move(model));
-  return Georeference(dem.geotransform(), ellipsoid,
-                      [pool](std::span<double> x, std::span<double> y) { pool->transform(x, y); });
+  Context own = new_context();  // outlives this call, unlike the one that the parts live in
+  model.transformation.reset(proj_clone(own.get(), model.transformation.get()));
+  auto pool = std::make_shared<LonLatPool>(std::move(own), std::move(model));
+  Georeference georeference(dem.geotransform(), ellipsoid,
+                            [pool](std::span<double> x, std::span<double> y) { pool->transform(x, y); });
+  refuse_degrees_as_lengths(context.get(), parts.horizontal.get(), dem, georeference);
+  return georeference;
 }
 
 CrsUnits crs_units(const std::string& crs) {

@@ -59,6 +59,16 @@ void check_extension(const std::string& path) {
   throw InvalidInput("The output '" + path + "' ends in '" + extension + "'; results are GeoTIFF: use .tif.");
 }
 
+// GDAL itself would only warn, and write something else than was asked for.
+void require_known(const GDALDriver& driver, const std::string& option) {
+  const gdal::ErrorLog quiet;
+  CPLStringList alone;
+  alone.AddString(option.c_str());
+  if (GDALValidateCreationOptions(const_cast<GDALDriver*>(&driver), alone.List())) return;
+  throw InvalidInput("The creation option '" + option +
+                     "' or its value is unknown to GDAL's GTiff driver; gdalinfo --format GTiff lists them.");
+}
+
 CPLStringList creation_options(const GDALDriver& driver, const RasterMetadata& metadata, int threads) {
   CPLStringList options;
   const char* known = const_cast<GDALDriver&>(driver).GetMetadataItem(GDAL_DMD_CREATIONOPTIONLIST);
@@ -72,6 +82,7 @@ CPLStringList creation_options(const GDALDriver& driver, const RasterMetadata& m
     if (equals == std::string::npos || equals == 0) {
       throw InvalidInput("The creation option '" + option + "' is not of the form KEY=VALUE.");
     }
+    require_known(driver, option);
     options.SetNameValue(option.substr(0, equals).c_str(), option.substr(equals + 1).c_str());
   }
   const std::string compression = options.FetchNameValue("COMPRESS");

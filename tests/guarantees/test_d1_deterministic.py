@@ -69,7 +69,7 @@ def test_max_distance(earth):
     side = 10.0 if earth is UTM else 45.0
     for distance in (12 * side, 30 * side, 55 * side):
         part = one.viewshed(max_distance=distance)
-        same_where_asked(part, whole, one, 300)
+        same_where_asked(part, whole, one, 150)
 
 
 def test_company():

@@ -162,3 +162,16 @@ def test_smallest_dem():
 def test_a_terrain_needs_two_rows_and_columns(shape):
     with pytest.raises(ValueError, match="2 x 2|2 rows"):
         sb.Dem(np.zeros(shape, np.float32), gt(8))
+
+
+def test_an_eye_in_the_outer_half_of_a_border_cell_stands_on_the_rim():
+    """The terrain ends at the cell centres; 3 m east of the last one is taken as on it."""
+    dem, model = sb.Dem(np.float32(WALL), gt(3)), sb.ErrorModel(0, 0, 0)
+    inside, outside = (sb.viewshed(dem, [(x, 15)], error_model=model, curvature=False) for x in (75, 78))
+    assert inside.confidence.tobytes() == outside.confidence.tobytes()
+
+
+def test_an_eye_below_the_ground():
+    result = look(WALL, (0, 1), observer_height=-1)
+    assert drawn(result)[1] == "V-------"
+    assert result.report["observers"][0]["status"] != "ok" and any("below the terrain" in w for w in result.report["warnings"])

@@ -3,8 +3,8 @@
 
     sigma_s = sigma_v + sigma_h tan(slope)
     sigma_g(d) = (Delta / z95) (1 - P(d))
-    between samples: leave out every other sample, see by how much the rest misses them; again at twice the spacing:
-    H = log2(s4 / s2), sd at the DEM's own spacing = s2 2^-H
+    between samples: see by how much each sample misses the mean of its neighbours, 1 and 2 samples away (s2, s4):
+    H = log2(s4 / s2), sd half a spacing from a sample = s2 2^-H
 """
 from __future__ import annotations
 
@@ -32,25 +32,37 @@ def geologic(d, delta, model="gaussian", range_m=None, exponent=None, cell=None)
     return delta / Z95 * share
 
 
-def decimation_residuals(z, step, anti=False):
-    """True minus interpolated at the samples that a grid of twice `step` leaves out; z already thinned to `step`.
-    All four ways to keep every other sample are taken together: each sample is missed along its row, its column, and
-    at the middle of a square (whose surface there is the mean along the NW-SE diagonal)."""
-    z = z[::step, ::step]
-    along_row = z[:, 1:-1] - 0.5 * (z[:, :-2] + z[:, 2:])
-    along_col = z[1:-1, :] - 0.5 * (z[:-2, :] + z[2:, :])
-    ends = (z[2:, :-2] + z[:-2, 2:]) if anti else (z[:-2, :-2] + z[2:, 2:])
-    middle = z[1:-1, 1:-1] - 0.5 * ends
-    return along_row, along_col, middle
+def residuals(z, q, anti=False):
+    """By how much each sample misses the mean of its neighbours q away: along its row, its column, and the NW-SE diagonal.
+    Nan where a neighbour is missing."""
+    padded = np.pad(np.asarray(z, float), q, constant_values=np.nan)
+    middle = padded[q:-q, q:-q]
+    rows, cols = middle.shape
+
+    def shifted(dr, dc):
+        return padded[q + dr:q + dr + rows, q + dc:q + dc + cols]
+
+    along_row = middle - 0.5 * (shifted(0, -q) + shifted(0, q))
+    along_col = middle - 0.5 * (shifted(-q, 0) + shifted(q, 0))
+    corner = -q if anti else q
+    diagonal = middle - 0.5 * (shifted(-q, -corner) + shifted(q, corner))
+    return along_row, along_col, diagonal
 
 
-def decimation_sd(z, step, anti=False):
-    squares = np.concatenate([r[np.isfinite(r)] ** 2 for r in decimation_residuals(z, step, anti)])
-    return math.sqrt(squares.mean())
-
-
-def growth(z, anti=False):
-    """(H, sd between the samples at the DEM's own spacing)."""
-    s2, s4 = decimation_sd(z, 1, anti), decimation_sd(z, 2, anti)
+def growth(z):
+    """(H, sd half a spacing from a sample): rows and columns, the same places for both spacings."""
+    near, far = residuals(z, 1)[:2], residuals(z, 2)[:2]
+    both = np.isfinite(far[0]) & np.isfinite(far[1]) & np.isfinite(near[0]) & np.isfinite(near[1])
+    s2, s4 = (math.sqrt(np.mean([np.mean(e[both] ** 2) for e in pair])) for pair in (near, far))
     exponent = math.log2(s4 / s2)
     return exponent, s2 * 2 ** -exponent
+
+
+def local_variation(z, exponent, anti=False):
+    """sd half a spacing from each sample: 2^-H times the rms of the residuals of the nine samples around, the diagonal ones (sqrt2
+    times as far) counting as e / sqrt2^H. Nan where the 5 x 5 samples are not all there."""
+    row, col, diagonal = residuals(z, 1, anti)
+    squares = row ** 2 + col ** 2 + 2 ** -exponent * diagonal ** 2
+    padded = np.pad(squares, 1, constant_values=np.nan)
+    total = sum(padded[1 + dr:padded.shape[0] - 1 + dr, 1 + dc:padded.shape[1] - 1 + dc] for dr in (-1, 0, 1) for dc in (-1, 0, 1))
+    return 2 ** -exponent * np.sqrt(total / 27)

@@ -14,7 +14,7 @@ def fractal(shape, seed, relief=50.0, roughness=1.9):
     spectrum = np.fft.fft2(rng.normal(size=shape)) * frequency ** -roughness
     spectrum[0, 0] = 0.0
     z = np.fft.ifft2(spectrum).real
-    return np.float32((z - z.min()) / (z.max() - z.min()) * relief)
+    return np.ascontiguousarray((z - z.min()) / (z.max() - z.min()) * relief, np.float32)
 
 
 def noise(shape, seed, relief=10.0):
