@@ -222,6 +222,7 @@ void refuse_degrees_as_lengths(PJ_CONTEXT* context, PJ* horizontal, const DemSou
   if (!proj_get_area_of_use(context, horizontal, &west, &south, &east, &north, &area) || west < -360) return;
   const LonLat middle = georeference.lon_lat((dem.cols() - 1) / 2.0, (dem.rows() - 1) / 2.0);
   const double beyond_west = std::fmod(std::fmod(middle.lon - west, 360) + 360, 360);
+  // 0 for a worldwide CRS: near its origin, in the Gulf of Guinea, there is no terrain.
   const double width = std::fmod(std::fmod(east - west, 360) + 360, 360);
   if (beyond_west <= width && middle.lat >= south && middle.lat <= north) return;
   const char* name = proj_get_name(horizontal);

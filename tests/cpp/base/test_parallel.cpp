@@ -68,6 +68,22 @@ TEST(Workers, TheFirstExceptionComesOutAndStopsTheRest) {
   }
 }
 
+TEST(Workers, TellWhatTheJobOnThisThreadMayUse) {
+  const int all = Workers(0).count();
+  EXPECT_EQ(Workers::count_here(), all);
+  {
+    const Workers one(1);
+    EXPECT_EQ(Workers::count_here(), 1);
+    {
+      const Workers more(0);
+      EXPECT_EQ(Workers::count_here(), all);
+    }
+    EXPECT_EQ(Workers::count_here(), 1);
+    std::jthread([&] { EXPECT_EQ(Workers::count_here(), all); });
+  }
+  EXPECT_EQ(Workers::count_here(), all);
+}
+
 TEST(Workers, RefuseSillyNumbers) {
   EXPECT_THROW(Workers(-1), InvalidInput);
   EXPECT_THROW(Workers(100000), InvalidInput);

@@ -136,6 +136,19 @@ TEST(Crs, RefusesWhatHasNoMapCoordinates) {
   }
 }
 
+TEST(Crs, DegreesUnderAProjectedCrsAreRefused) {
+  try {
+    georeference_of(dem_at("EPSG:32632", 11, 47, 0.001));
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_TRUE(says(error.what(), "look like degrees"));
+    EXPECT_TRUE(says(error.what(), "WGS 84 / UTM zone 32N"));
+  }
+  EXPECT_THROW(georeference_of(dem_at("EPSG:3857", 11, 47, 0.001)), InvalidInput);  // in the Gulf of Guinea
+  // Centimetre cells around the origin of a CRS made for a site.
+  EXPECT_NO_THROW(georeference_of(dem_at("+proj=tmerc +lat_0=47 +lon_0=11 +type=crs", 11, 47, 0.05)));
+}
+
 TEST(Crs, PlacesOutsideTheProjectionAreNoNumbers) {
   const LonLat place = place_of("EPSG:32632", 1e12, 1e12);
   EXPECT_FALSE(std::isfinite(place.lon) && std::isfinite(place.lat));
