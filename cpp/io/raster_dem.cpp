@@ -66,7 +66,8 @@ class RasterDem final : public DemSource {
     }
   }
 
-  // GDAL's handles serve one thread at a time. Whoever waits for another job's reading can still be cancelled.
+  // GDAL's handles serve one thread at a time. Whoever waits for another job's reading can still be
+  // cancelled.
   std::unique_lock<std::recursive_mutex> wait_for_turn(Progress& progress) const {
     std::unique_lock turn(one_reader_, std::try_to_lock);
     while (!turn.owns_lock() && !turn.try_lock()) {
