@@ -36,20 +36,20 @@ Quantity quantity_from(const py::object& value) {
   return RasterFile{path, band};
 }
 
-template <Quantity ErrorModel::*kField>
+template <Quantity ErrorModel::*Field>
 void def_quantity(py::class_<ErrorModel>& model, const char* name) {
   model.def_property(
-      name, [](const ErrorModel& self) { return std::visit(ToPython{}, self.*kField); },
-      [](ErrorModel& self, const py::object& value) { self.*kField = quantity_from(value); });
+      name, [](const ErrorModel& self) { return std::visit(ToPython{}, self.*Field); },
+      [](ErrorModel& self, const py::object& value) { self.*Field = quantity_from(value); });
 }
 
 // `values` are in the user's row order; `flipped` as the DEM's.
-template <Quantity ErrorModel::*kField>
+template <Quantity ErrorModel::*Field>
 void set_array(ErrorModel& model, const FloatArray& values, bool flipped) {
   Grid<float> grid(static_cast<int>(values.shape(0)), static_cast<int>(values.shape(1)));
   std::copy_n(values.data(), grid.size(), grid.data());
   if (flipped) grid.flip_rows();
-  model.*kField = std::make_shared<const Grid<float>>(std::move(grid));
+  model.*Field = std::make_shared<const Grid<float>>(std::move(grid));
 }
 
 void bind_model(py::module_& m) {

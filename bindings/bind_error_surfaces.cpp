@@ -14,9 +14,9 @@ namespace sightbound::python {
 
 namespace {
 
-template <Grid<float> ErrorSurfaces::*kGrid>
+template <Grid<float> ErrorSurfaces::*GridField>
 py::array grid_of(const py::object& self) {
-  return view_of(self.cast<const ErrorSurfaces&>().*kGrid, self);
+  return view_of(self.cast<const ErrorSurfaces&>().*GridField, self);
 }
 
 void bind_options(py::module_& m) {

@@ -4,6 +4,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <utility>
 
 #include "bindings.h"
 
@@ -22,7 +23,7 @@ PyObject* cancelled_type = nullptr;
 
 void translate(std::exception_ptr thrown) {
   try {
-    if (thrown) std::rethrow_exception(thrown);
+    if (thrown) std::rethrow_exception(std::move(thrown));
   } catch (const InvalidInput& e) {
     PyErr_SetString(PyExc_ValueError, e.what());
   } catch (const IoError& e) {

@@ -92,9 +92,9 @@ py::dict to_dict(const ViewshedReport& report) {
 }
 
 // The array of a grid of `self`, or None where it was not computed.
-template <auto kGrid>
+template <auto GridField>
 py::object grid_of(const py::object& self) {
-  const auto& grid = self.cast<const ViewshedResult&>().*kGrid;
+  const auto& grid = self.cast<const ViewshedResult&>().*GridField;
   if (grid.empty()) return py::none();
   return view_of(grid, self);
 }
