@@ -36,9 +36,9 @@ std::shared_ptr<DemSource> from_array(const FloatArray& heights, const std::arra
   return std::make_shared<ArrayDem>(std::move(held), Geotransform(geotransform), crs_wkt);
 }
 
-std::array<double, 6> users_geotransform(const DemSource& dem) {
+py::tuple users_geotransform(const DemSource& dem) {
   const Geotransform& own = dem.geotransform();
-  return (dem.flipped() ? own.of_flipped(dem.rows()) : own).coefficients();
+  return py::tuple(py::cast((dem.flipped() ? own.of_flipped(dem.rows()) : own).coefficients()));
 }
 
 py::array heights(const std::shared_ptr<DemSource>& dem) {

@@ -41,8 +41,9 @@ void bind_result(py::module_& m) {
       .def_property_readonly("upper", &grid_of<&ErrorSurfaces::upper>)
       .def_property_readonly("rows", [](const ErrorSurfaces& self) { return self.sigma.rows(); })
       .def_property_readonly("cols", [](const ErrorSurfaces& self) { return self.sigma.cols(); })
-      .def_property_readonly("geotransform",
-                             [](const ErrorSurfaces& self) { return self.geotransform.coefficients(); })
+      .def_property_readonly(
+          "geotransform",
+          [](const ErrorSurfaces& self) { return py::tuple(py::cast(self.geotransform.coefficients())); })
       .def_readonly("crs_wkt", &ErrorSurfaces::crs_wkt)
       .def_readonly("error_model", &ErrorSurfaces::error_model)
       .def_readonly("warnings", &ErrorSurfaces::warnings);

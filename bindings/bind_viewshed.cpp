@@ -119,8 +119,9 @@ void bind_result(py::module_& m) {
       .def_property_readonly("likely_visible_height", &grid_of<&ViewshedResult::likely_visible_height>)
       .def_property_readonly("rows", [](const ViewshedResult& self) { return self.confidence.rows(); })
       .def_property_readonly("cols", [](const ViewshedResult& self) { return self.confidence.cols(); })
-      .def_property_readonly("geotransform",
-                             [](const ViewshedResult& self) { return self.geotransform.coefficients(); })
+      .def_property_readonly(
+          "geotransform",
+          [](const ViewshedResult& self) { return py::tuple(py::cast(self.geotransform.coefficients())); })
       .def_readonly("crs_wkt", &ViewshedResult::crs_wkt)
       .def("prepend_warnings", &prepend_warnings)
       .def("report", [](const ViewshedResult& self) { return to_dict(self.report); });

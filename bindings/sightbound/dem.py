@@ -71,7 +71,7 @@ class Dem:
     @property
     def geotransform(self) -> Geotransform:
         """GDAL's six numbers, in the row order of the file or array."""
-        return tuple(self._core.geotransform)
+        return self._core.geotransform
 
     @property
     def crs_wkt(self) -> str | None:

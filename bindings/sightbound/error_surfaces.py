@@ -49,7 +49,7 @@ class ErrorSurfaces:
     @property
     def geotransform(self) -> Geotransform:
         """GDAL's six numbers of these rasters."""
-        return tuple(self._core.geotransform)
+        return self._core.geotransform
 
     @property
     def crs_wkt(self) -> str | None:

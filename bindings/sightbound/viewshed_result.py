@@ -68,7 +68,7 @@ class ViewshedResult:
     @property
     def geotransform(self) -> Geotransform:
         """GDAL's six numbers of these rasters."""
-        return tuple(self._core.geotransform)
+        return self._core.geotransform
 
     @property
     def crs_wkt(self) -> str | None:

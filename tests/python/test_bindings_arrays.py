@@ -185,6 +185,12 @@ def test_no_limit_among_limits():
     assert result.shape == dem.shape and np.isfinite(result.confidence).all()
 
 
+def test_geotransforms_are_tuples():
+    dem = sb.Dem(slope(), SOUTH_UP)
+    result = sb.viewshed(dem, EYE, error_model=EXACT)
+    assert dem.geotransform == result.geotransform == sb.error_surfaces(dem, EXACT).geotransform == SOUTH_UP
+
+
 def test_references_are_not_lost():
     """A job takes and returns what it holds: the counts of what it was given do not grow."""
     dem, model = sb.Dem(slope(), NORTH_UP), sb.ErrorModel(np.ones((30, 40), np.float32), 0, 0)
