@@ -24,6 +24,7 @@ SCENES = [
     Scene("degrees at 77", terrains.fractal(SHAPE, 118, 200.0), (10.0, 1 / 600, 0.0, 77.0, 0.0, -1 / 3600), "EPSG:4326", SOFT, (9.0, 7.0)),
     Scene("absolute eye", terrains.fractal(SHAPE, 119), **UTM, errors=SOFT, observer=(9.0, 7.0), observer_height=45.0, target_height=30.0,
           how=dict(height_reference="absolute")),
+    Scene("tall targets asked for", terrains.fractal(SHAPE, 119), **UTM, errors=SOFT, observer=(9.0, 7.0), observer_height=3.0, target_height=12.0),
     Scene("surface model", terrains.fractal(SHAPE, 111) + terrains.spikes(SHAPE, 12, 30, 9.0), **UTM, errors=SOFT, observer=(9.0, 7.0),
           ground=terrains.fractal(SHAPE, 111)),
     Scene("80 x 80", terrains.fractal((80, 80), 120, 120.0), **UTM, errors=SOFT, observer=(40.0, 31.0), sample=250),
