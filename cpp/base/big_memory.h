@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory for rasters: large blocks ask the system for huge pages, since sight runs across rows and would otherwise spend a
-// third of its time looking up pages.
+// Memory for rasters: large blocks ask the system for huge pages, since sight runs across rows and would
+// otherwise spend a third of its time looking up pages.
 #pragma once
 
 #include <cstddef>

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Method. At Chebyshev points of the reach the exact azimuthal equidistant position of the raster place is taken from
-// GeographicLib (distance, azimuth) together with D^2 / 2R at the geodesic's midpoint; polynomials in the offset from the
-// observer are fitted by least squares (Eigen), their degree raised until independent check points agree.
-// Notation: x, y = offsets in columns and rows over scale_; xi in (0, 1) along a path; E, N = east, north.
+// Method. At Chebyshev points of the reach the exact azimuthal equidistant position of the raster place is
+// taken from GeographicLib (distance, azimuth) together with D^2 / 2R at the geodesic's midpoint; polynomials
+// in the offset from the observer are fitted by least squares (Eigen), their degree raised until independent
+// check points agree. Notation: x, y = offsets in columns and rows over scale_; xi in (0, 1) along a path; E,
+// N = east, north.
 #include "earth/observer_frame.h"
 
-#include <Eigen/Dense>
-#include <GeographicLib/Geodesic.hpp>
-#include <GeographicLib/GeodesicLine.hpp>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+
+#include <Eigen/Dense>
+#include <GeographicLib/Geodesic.hpp>
+#include <GeographicLib/GeodesicLine.hpp>
 
 #include "base/error.h"
 
@@ -23,12 +25,13 @@ constexpr double kMeanRadius_m = 6371008.8;  // IUGG mean radius, for planes wit
 constexpr double kRadian = std::numbers::pi / 180;
 constexpr std::array kDegrees{2, 3, 4, 5, 6, 7, 8, 10, 12};
 constexpr std::array kTerms{0, 2, 3, 4, 6, 8};
-constexpr double kWantedCells = 1e-6;   // error aimed at; k moves by less than 1e-5 for it on any terrain that is not a wall
+constexpr double kWantedCells =
+    1e-6;  // error aimed at; k moves by less than 1e-5 for it on any terrain that is not a wall
 constexpr double kWantedBulge_m = 1e-6;
 constexpr double kLargestBulgeError_m = 1e-3;
 
 struct Sample {
-  double x, y;              // raster offset from the observer
+  double x, y;  // raster offset from the observer
   FramePlace place;
 };
 
@@ -70,10 +73,13 @@ class Ground {
     }
     if (!georeference_.is_plane()) georeference_.lon_lat(lons, lats);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      samples[i].place = georeference_.is_plane() ? on_plane(georeference_, col_, row_, samples[i].x, samples[i].y)
-                                                  : from_observer({lons[i], lats[i]});
+      samples[i].place = georeference_.is_plane()
+                             ? on_plane(georeference_, col_, row_, samples[i].x, samples[i].y)
+                             : from_observer({lons[i], lats[i]});
     }
-    std::erase_if(samples, [](const Sample& s) { return !std::isfinite(s.place.east + s.place.north + s.place.bulge); });
+    std::erase_if(samples, [](const Sample& s) {
+      return !std::isfinite(s.place.east + s.place.north + s.place.bulge);
+    });
     return samples;
   }
 
@@ -124,7 +130,8 @@ double GeodesicPath::minor_slope(double xi) const {
 double GeodesicPath::bow_bound() const {
   // d2/dxi2 of xi^(i+1) - xi^(i+2) is at most (i + 1) i + (i + 2)(i + 1) in size on [0, 1].
   double bound = 0;
-  for (int i = 0; i < bow_.terms; ++i) bound += std::abs(bow_.c[static_cast<std::size_t>(i)]) * 2 * (i + 1) * (i + 1);
+  for (int i = 0; i < bow_.terms; ++i)
+    bound += std::abs(bow_.c[static_cast<std::size_t>(i)]) * 2 * (i + 1) * (i + 1);
   return bound;
 }
 
@@ -148,7 +155,8 @@ void ObserverFrame::fit(const Georeference& georeference, const Window& reach) {
   double cell = 1e300;
   for (std::size_t i : {0u, 3u}) {
     for (std::size_t j : {1u, 2u}) {
-      cell = std::min(cell, std::hypot(near[i].place.east - near[j].place.east, near[i].place.north - near[j].place.north));
+      cell = std::min(cell, std::hypot(near[i].place.east - near[j].place.east,
+                                       near[i].place.north - near[j].place.north));
     }
   }
   if (!(cell > 0)) throw InvalidInput(too_large("its cells have no size on the ground"));
@@ -157,8 +165,8 @@ void ObserverFrame::fit(const Georeference& georeference, const Window& reach) {
   const double margin = scale_ / 16 + 2;
   double best = 1e300;
   for (const int degree : kDegrees) {
-    const std::vector<Sample> samples =
-        ground.at(chebyshev(left - margin, right + margin, degree + 4), chebyshev(top - margin, bottom + margin, degree + 4));
+    const std::vector<Sample> samples = ground.at(chebyshev(left - margin, right + margin, degree + 4),
+                                                  chebyshev(top - margin, bottom + margin, degree + 4));
     const auto width = static_cast<std::size_t>(degree + 1);
     std::vector<std::pair<int, int>> powers;
     for (int i = 0; i <= degree; ++i) {
@@ -169,8 +177,8 @@ void ObserverFrame::fit(const Georeference& georeference, const Window& reach) {
     for (std::size_t s = 0; s < samples.size(); ++s) {
       const auto at = static_cast<Eigen::Index>(s);
       for (std::size_t p = 0; p < powers.size(); ++p) {
-        a(at, static_cast<Eigen::Index>(p)) =
-            std::pow(samples[s].x / scale_, powers[p].first) * std::pow(samples[s].y / scale_, powers[p].second);
+        a(at, static_cast<Eigen::Index>(p)) = std::pow(samples[s].x / scale_, powers[p].first) *
+                                              std::pow(samples[s].y / scale_, powers[p].second);
       }
       b.row(at) << samples[s].place.east, samples[s].place.north, samples[s].place.bulge;
     }
@@ -182,7 +190,8 @@ void ObserverFrame::fit(const Georeference& georeference, const Window& reach) {
     north_.assign(width * width, 0);
     bulge_.assign(width * width, 0);
     for (std::size_t p = 0; p < powers.size(); ++p) {
-      const auto at = static_cast<std::size_t>(powers[p].first) * width + static_cast<std::size_t>(powers[p].second);
+      const auto at =
+          static_cast<std::size_t>(powers[p].first) * width + static_cast<std::size_t>(powers[p].second);
       east_[at] = c(static_cast<Eigen::Index>(p), 0);
       north_[at] = c(static_cast<Eigen::Index>(p), 1);
       bulge_[at] = c(static_cast<Eigen::Index>(p), 2);
@@ -225,7 +234,8 @@ FramePlace ObserverFrame::at(double col, double row) const {
 }
 
 ObserverFrame::Jet ObserverFrame::jet(double major, double minor, bool transposed) const {
-  const double x = ((transposed ? minor : major) - col_) / scale_, y = ((transposed ? major : minor) - row_) / scale_;
+  const double x = ((transposed ? minor : major) - col_) / scale_,
+               y = ((transposed ? major : minor) - row_) / scale_;
   const auto width = static_cast<std::size_t>(degree_ + 1);
   double e = 0, n = 0, ex = 0, nx = 0, ey = 0, ny = 0;
   for (int i = degree_; i >= 0; --i) {
@@ -249,9 +259,11 @@ ObserverFrame::Jet ObserverFrame::jet(double major, double minor, bool transpose
   return transposed ? Jet{e, n, ex, nx, ey, ny} : Jet{e, n, ey, ny, ex, nx};
 }
 
-double ObserverFrame::minor_towards(double major, double guess, bool transposed, double east, double north, Jet* at) const {
+double ObserverFrame::minor_towards(double major, double guess, bool transposed, double east, double north,
+                                    Jet* at) const {
   // Newton on E(minor) north - N(minor) east = 0: the place lies on the geodesic with that direction.
-  constexpr double kCloseEnough = 1e-3;  // cells; the next step would move by its square times the map's curvature (< 1e-4)
+  constexpr double kCloseEnough =
+      1e-3;  // cells; the next step would move by its square times the map's curvature (< 1e-4)
   constexpr int kMostSteps = 12;
   for (int step = 0; step < kMostSteps; ++step) {
     const Jet j = jet(major, guess, transposed);
@@ -282,7 +294,8 @@ GeodesicPath ObserverFrame::path_to(double col, double row, bool transposed) con
     const double xi = nodes_[at_node], w = xi * (1 - xi);
     const double straight = path.minor0_ + xi * path.minor_span_;
     Jet j{};
-    const double minor = minor_towards(major0 + xi * (major - major0), straight + w * last, transposed, east, north, &j);
+    const double minor =
+        minor_towards(major0 + xi * (major - major0), straight + w * last, transposed, east, north, &j);
     last = bow[at_node] = (minor - straight) / w;
     stretch[at_node] = ((j.east * east + j.north * north) / distance - xi) / w;
   }
@@ -309,7 +322,8 @@ GeodesicRay ObserverFrame::ray(bool transposed, int sign, double slope, double r
     const auto at_node = static_cast<std::size_t>(i);
     const double step = nodes_[at_node] * reach, straight = ray.minor0_ + step * slope;
     Jet j{};
-    const double minor = minor_towards(major0 + sign * step, straight + step * step * last, transposed, ue, un, &j);
+    const double minor =
+        minor_towards(major0 + sign * step, straight + step * step * last, transposed, ue, un, &j);
     last = bow[at_node] = (minor - straight) / (step * step);
     stretch[at_node] = ((j.east * ue + j.north * un) / (ray.metres_per_step_ * step) - 1) / nodes_[at_node];
   }
@@ -329,7 +343,8 @@ void ObserverFrame::set_terms(int terms) {
   }
   const Eigen::MatrixXd inverse = v.inverse();
   for (int i = 0; i < terms; ++i) {
-    for (int j = 0; j < terms; ++j) inverse_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = inverse(i, j);
+    for (int j = 0; j < terms; ++j)
+      inverse_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = inverse(i, j);
   }
 }
 
@@ -361,7 +376,8 @@ void ObserverFrame::choose_terms(const Window& reach) {
 double ObserverFrame::interpolation_error(const Window& reach) const {
   // Paths to the rim of the reach, held against places found directly.
   double error = 0;
-  const auto cols = chebyshev(reach.col, reach.col_end() - 1, 5), rows = chebyshev(reach.row, reach.row_end() - 1, 5);
+  const auto cols = chebyshev(reach.col, reach.col_end() - 1, 5),
+             rows = chebyshev(reach.row, reach.row_end() - 1, 5);
   for (std::size_t i = 0; i < cols.size(); ++i) {
     for (std::size_t j = 0; j < rows.size(); ++j) {
       if (i % 4 != 0 && j % 4 != 0) continue;
@@ -374,8 +390,8 @@ double ObserverFrame::interpolation_error(const Window& reach) const {
       const double major0 = transposed ? row_ : col_, span = (transposed ? row : col) - major0;
       for (const double xi : {0.03, 0.21, 0.5, 0.77, 0.96}) {
         Jet found{};
-        const double minor =
-            minor_towards(major0 + xi * span, path.minor(xi), transposed, target.east / distance, target.north / distance, &found);
+        const double minor = minor_towards(major0 + xi * span, path.minor(xi), transposed,
+                                           target.east / distance, target.north / distance, &found);
         error = std::max(error, std::abs(minor - path.minor(xi)));
         const double share = (found.east * target.east + found.north * target.north) / (distance * distance);
         error = std::max(error, std::abs(share - path.share(xi)) * std::abs(span));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ground as one observer has it: true distances and directions on the ellipsoid, in raster coordinates.
 //
-// A geodesic from the observer is a straight line in azimuthal equidistant coordinates (east, north) about him. The map
-// from raster coordinates to (east, north) is smooth, so one polynomial, fitted once for the reach of a viewshed, serves
-// degrees, Mercator, UTM and polar rasters alike. Its error at the places checked is below 1e-6 cell where a polynomial of
-// degree 12 can reach that, and never above kFrameTolerance; a reach too large for it is refused.
-// Cost: some hundred geodesics to make one, then about 50 ns a place.
+// A geodesic from the observer is a straight line in azimuthal equidistant coordinates (east, north) about
+// him. The map from raster coordinates to (east, north) is smooth, so one polynomial, fitted once for the
+// reach of a viewshed, serves degrees, Mercator, UTM and polar rasters alike. Its error at the places checked
+// is below 1e-6 cell where a polynomial of degree 12 can reach that, and never above kFrameTolerance; a reach
+// too large for it is refused. Cost: some hundred geodesics to make one, then about 50 ns a place.
 #pragma once
 
 #include <array>
@@ -17,11 +17,13 @@
 
 namespace sightbound {
 
-inline constexpr double kFrameTolerance = 1e-2;  // cells; the straight line may stand in up to this (design, section 3)
+inline constexpr double kFrameTolerance =
+    1e-2;  // cells; the straight line may stand in up to this (design, section 3)
 inline constexpr int kMaxPathTerms = 8;
 
-// A place relative to the observer, metres. `bulge` = D^2 / (2 R): how far the curved ground drops below the observer's
-// horizontal there, R the ellipsoid's radius along the line at its midpoint (so it is the same from either end).
+// A place relative to the observer, metres. `bulge` = D^2 / (2 R): how far the curved ground drops below the
+// observer's horizontal there, R the ellipsoid's radius along the line at its midpoint (so it is the same
+// from either end).
 struct FramePlace {
   double east = 0, north = 0, bulge = 0;
   double distance() const;
@@ -46,8 +48,9 @@ struct NodePolynomial {
   }
 };
 
-// The geodesic from the observer (xi = 0) to a target (xi = 1) in raster coordinates. The major coordinate (column, or
-// row when transposed) runs linearly with xi; the minor one bows; t is the share of the distance covered.
+// The geodesic from the observer (xi = 0) to a target (xi = 1) in raster coordinates. The major coordinate
+// (column, or row when transposed) runs linearly with xi; the minor one bows; t is the share of the distance
+// covered.
 class GeodesicPath {
  public:
   double minor(double xi) const { return minor0_ + xi * minor_span_ + xi * (1 - xi) * bow_(xi); }
@@ -55,8 +58,8 @@ class GeodesicPath {
   double share(double xi) const { return xi + xi * (1 - xi) * stretch_(xi); }
   // No larger second derivative of minor(xi) anywhere on the path.
   double bow_bound() const;
-  // The minor coordinate on the straight line between the ends; the path is never farther from it than largest_bow(), and
-  // share(xi) never farther from xi than largest_stretch().
+  // The minor coordinate on the straight line between the ends; the path is never farther from it than
+  // largest_bow(), and share(xi) never farther from xi than largest_stretch().
   double chord(double xi) const { return minor0_ + xi * minor_span_; }
   double largest_bow() const { return bow_.size() / 4; }
   double largest_stretch() const { return stretch_.size() / 4; }
@@ -68,7 +71,8 @@ class GeodesicPath {
   NodePolynomial bow_, stretch_;
 };
 
-// The geodesic that leaves the observer with a given slope (minor per major step), followed along the major axis.
+// The geodesic that leaves the observer with a given slope (minor per major step), followed along the major
+// axis.
 class GeodesicRay {
  public:
   // Minor coordinate after `step` > 0 major steps.
@@ -87,7 +91,8 @@ class GeodesicRay {
 
 class ObserverFrame {
  public:
-  // `reach`: all places that will be asked for. Throws InvalidInput when it is too large for one frame, or not on Earth.
+  // `reach`: all places that will be asked for. Throws InvalidInput when it is too large for one frame, or
+  // not on Earth.
   ObserverFrame(const Georeference&, double col, double row, const Window& reach);
 
   double col() const { return col_; }
@@ -97,13 +102,14 @@ class ObserverFrame {
 
   // The geodesic to a place; `transposed`: rows are the major coordinate. The major span must not be 0.
   GeodesicPath path_to(double col, double row, bool transposed) const;
-  // The geodesic leaving with `slope` in direction `sign` (+1, -1) of the major axis, good for `reach` major steps.
+  // The geodesic leaving with `slope` in direction `sign` (+1, -1) of the major axis, good for `reach` major
+  // steps.
   GeodesicRay ray(bool transposed, int sign, double slope, double reach) const;
 
  private:
   struct Jet {
-    double east, north;             // value
-    double east_minor, north_minor; // derivatives by the minor coordinate
+    double east, north;              // value
+    double east_minor, north_minor;  // derivatives by the minor coordinate
     double east_major, north_major;
   };
   void fit(const Georeference&, const Window& reach);

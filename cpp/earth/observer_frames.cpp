@@ -13,11 +13,14 @@ namespace {
 constexpr int kInnermost = 64;  // samples each way: below, a frame costs more than what is seen with it
 
 // The samples at most `half` from the base sample each way.
-Window ring(int half, const Window& raster) { return intersection({-half, -half, 2 * half + 1, 2 * half + 1}, raster); }
+Window ring(int half, const Window& raster) {
+  return intersection({-half, -half, 2 * half + 1, 2 * half + 1}, raster);
+}
 
 }  // namespace
 
-ObserverFrames::ObserverFrames(const Georeference& georeference, double col, double row, const Window& raster, const Window& reach) {
+ObserverFrames::ObserverFrames(const Georeference& georeference, double col, double row, const Window& raster,
+                               const Window& reach) {
   for (int half = kInnermost;; half *= 2) {
     const Window window = ring(half, raster);
     const bool last = window.contains(reach);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The frames of one observer, one for each doubling of the distance in samples. What is found of a place then depends on
-// observer, place and raster alone, to the last bit, however far a job reaches (a polynomial depends on what it is fitted to).
-// Cost: that of ObserverFrame for each doubling.
+// The frames of one observer, one for each doubling of the distance in samples. What is found of a place then
+// depends on observer, place and raster alone, to the last bit, however far a job reaches (a polynomial
+// depends on what it is fitted to). Cost: that of ObserverFrame for each doubling.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,8 @@ namespace sightbound {
 
 class ObserverFrames {
  public:
-  // `raster` (whole) and `reach` (all places that will be asked for) in the coordinates of the georeference; the observer
-  // is at (col, row), both in [0, 1]. Throws InvalidInput as ObserverFrame does for `reach`.
+  // `raster` (whole) and `reach` (all places that will be asked for) in the coordinates of the georeference;
+  // the observer is at (col, row), both in [0, 1]. Throws InvalidInput as ObserverFrame does for `reach`.
   ObserverFrames(const Georeference&, double col, double row, const Window& raster, const Window& reach);
 
   // The frame that covers the whole reach.

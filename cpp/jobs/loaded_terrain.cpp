@@ -17,7 +17,8 @@ double skew(const Geotransform& geotransform) {
 }
 
 // The ground raster's heights at the DEM's samples.
-Grid<float> ground_at(const DemSource& ground, const DemSource& source, const Window& window, Progress& progress) {
+Grid<float> ground_at(const DemSource& ground, const DemSource& source, const Window& window,
+                      Progress& progress) {
   if (ground.crs_wkt() != source.crs_wkt() && !ground.crs_wkt().empty() && !source.crs_wkt().empty() &&
       ground.geotransform().coefficients() != source.geotransform().coefficients()) {
     throw InvalidInput("ground is in another coordinate system than the DEM; reproject it to the DEM's.");
@@ -41,7 +42,8 @@ Grid<float> ground_at(const DemSource& ground, const DemSource& source, const Wi
   needed.cols = whole(std::ceil(col_high)) + 2 - needed.col;
   needed.rows = whole(std::ceil(row_high)) + 2 - needed.row;
   needed = intersection(needed, ground.window());
-  if (needed.cols < 2 || needed.rows < 2) throw InvalidInput("ground does not cover the DEM where it is needed.");
+  if (needed.cols < 2 || needed.rows < 2)
+    throw InvalidInput("ground does not cover the DEM where it is needed.");
   const Grid<float> samples = ground.read(needed, progress);
   if (needed.cols == window.cols && needed.rows == window.rows &&
       ground.geotransform().coefficients() == source.geotransform().coefficients()) {
@@ -53,7 +55,8 @@ Grid<float> ground_at(const DemSource& ground, const DemSource& source, const Wi
     for (int col = 0; col < window.cols; ++col) {
       const Xy at = on_ground(col, row);
       const double c = at.x - needed.col, r = at.y - needed.row;
-      const bool inside = c >= -kRim && r >= -kRim && c <= needed.cols - 1 + kRim && r <= needed.rows - 1 + kRim;
+      const bool inside =
+          c >= -kRim && r >= -kRim && c <= needed.cols - 1 + kRim && r <= needed.rows - 1 + kRim;
       out.at(row, col) = inside ? static_cast<float>(interpolate(samples, c, r)) : std::nanf("");
     }
     progress.check();
@@ -79,8 +82,8 @@ double interpolate(const Grid<float>& samples, double col, double row) {
 }
 
 LoadedTerrain::LoadedTerrain(const DemSource& source, const Georeference& georeference, const Window& window,
-                             const ErrorModel& model, const ViewshedOptions& options, std::vector<std::string>& warnings,
-                             const Workers& workers, Progress& progress)
+                             const ErrorModel& model, const ViewshedOptions& options,
+                             std::vector<std::string>& warnings, const Workers& workers, Progress& progress)
     : window_(window), heights_(source.read(window, progress)) {
   if (options.ground) ground_ = ground_at(*options.ground, source, window, progress);
   error_ = resolve_error(model, source, georeference, window, heights_, warnings, workers, progress);
@@ -95,7 +98,8 @@ LoadedTerrain::LoadedTerrain(const DemSource& source, const Georeference& georef
   for (const CellSize& cell : error_.cell_sizes) cell_areas_.push_back(cell.col_m * cell.row_m * sine);
 }
 
-ResolveMemory LoadedTerrain::memory(const Window& window, const ErrorModel& model, const ViewshedOptions& options) {
+ResolveMemory LoadedTerrain::memory(const Window& window, const ErrorModel& model,
+                                    const ViewshedOptions& options) {
   const std::size_t grid = window.cells() * sizeof(float);
   const ResolveMemory error = resolve_error_memory(model, window);
   const std::size_t heights = grid * (options.ground ? 2 : 1), pyramid = grid / 8;

@@ -17,8 +17,8 @@ namespace sightbound {
 class LoadedTerrain {
  public:
   // `model` must be complete. Appends to `warnings`.
-  LoadedTerrain(const DemSource&, const Georeference&, const Window&, const ErrorModel& model, const ViewshedOptions&,
-                std::vector<std::string>& warnings, const Workers&, Progress&);
+  LoadedTerrain(const DemSource&, const Georeference&, const Window&, const ErrorModel& model,
+                const ViewshedOptions&, std::vector<std::string>& warnings, const Workers&, Progress&);
   LoadedTerrain(const LoadedTerrain&) = delete;
   LoadedTerrain& operator=(const LoadedTerrain&) = delete;
 

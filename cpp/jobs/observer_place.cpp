@@ -11,8 +11,8 @@ namespace sightbound {
 
 namespace {
 
-constexpr double kTallest_m = 1e8;    // beyond the Moon's distance nobody stands
-constexpr double kFarthest_m = 2e7;   // half way round the Earth
+constexpr double kTallest_m = 1e8;   // beyond the Moon's distance nobody stands
+constexpr double kFarthest_m = 2e7;  // half way round the Earth
 
 std::string number(double value) {
   char text[32];
@@ -21,7 +21,8 @@ std::string number(double value) {
 }
 
 void require(bool right, const std::string& name, const char* field, double value, const char* allowed) {
-  if (!right) throw InvalidInput(name + ": " + field + " is " + number(value) + "; it must be " + allowed + ".");
+  if (!right)
+    throw InvalidInput(name + ": " + field + " is " + number(value) + "; it must be " + allowed + ".");
 }
 
 // In coordinates from the base sample.
@@ -41,19 +42,25 @@ std::string name_of(const Observer& observer, std::size_t index) {
 void validate(const Observer& o, const std::string& name) {
   require(std::isfinite(o.x), name, "x", o.x, "a finite number");
   require(std::isfinite(o.y), name, "y", o.y, "a finite number");
-  require(std::abs(o.height) <= kTallest_m, name, "observer_height", o.height, "a number of metres of at most 1e8 in size");
+  require(std::abs(o.height) <= kTallest_m, name, "observer_height", o.height,
+          "a number of metres of at most 1e8 in size");
   require(std::abs(o.target_height) <= kTallest_m, name, "target_height", o.target_height,
           "a number of metres of at most 1e8 in size");
-  require(o.min_distance >= 0 && std::isfinite(o.min_distance), name, "min_distance", o.min_distance, "0 metres or more");
+  require(o.min_distance >= 0 && std::isfinite(o.min_distance), name, "min_distance", o.min_distance,
+          "0 metres or more");
   require(o.max_distance > 0, name, "max_distance", o.max_distance, "more than 0 metres");
-  require(o.min_distance <= o.max_distance, name, "min_distance", o.min_distance, "no larger than max_distance");
-  require(std::isfinite(o.azimuth_from) && std::abs(o.azimuth_from) <= 720, name, "azimuth from", o.azimuth_from,
-          "between -720 and 720 degrees");
+  require(o.min_distance <= o.max_distance, name, "min_distance", o.min_distance,
+          "no larger than max_distance");
+  require(std::isfinite(o.azimuth_from) && std::abs(o.azimuth_from) <= 720, name, "azimuth from",
+          o.azimuth_from, "between -720 and 720 degrees");
   require(std::isfinite(o.azimuth_to) && std::abs(o.azimuth_to) <= 720, name, "azimuth to", o.azimuth_to,
           "between -720 and 720 degrees");
-  require(o.angle_from >= -90 && o.angle_from <= 90, name, "vertical angle from", o.angle_from, "between -90 and 90 degrees");
-  require(o.angle_to >= -90 && o.angle_to <= 90, name, "vertical angle to", o.angle_to, "between -90 and 90 degrees");
-  require(o.angle_from <= o.angle_to, name, "vertical angle from", o.angle_from, "no larger than vertical angle to");
+  require(o.angle_from >= -90 && o.angle_from <= 90, name, "vertical angle from", o.angle_from,
+          "between -90 and 90 degrees");
+  require(o.angle_to >= -90 && o.angle_to <= 90, name, "vertical angle to", o.angle_to,
+          "between -90 and 90 degrees");
+  require(o.angle_from <= o.angle_to, name, "vertical angle from", o.angle_from,
+          "no larger than vertical angle to");
 }
 
 void validate(const ViewshedOptions& options) {
@@ -68,7 +75,8 @@ GridPlace place_on(const DemSource& source, double x, double y, const std::strin
   const Xy at = source.geotransform().to_raster(x, y);
   if (!(at.x >= -0.5 && at.y >= -0.5 && at.x <= source.cols() - 0.5 && at.y <= source.rows() - 0.5)) {
     throw InvalidInput(name + " at (" + number(x) + ", " + number(y) +
-                       ") lies outside the DEM. Give its position in the DEM's coordinate system, or use a DEM that covers it.");
+                       ") lies outside the DEM. Give its position in the DEM's coordinate system, or use a "
+                       "DEM that covers it.");
   }
   // Coordinates written with a dozen digits should hit the sample they mean.
   constexpr double kSampleSnap = 1e-7;  // cells
@@ -85,12 +93,16 @@ GridPlace place_on(const DemSource& source, double x, double y, const std::strin
   return place;
 }
 
-Window reach_of(const DemSource& source, const Georeference& georeference, const GridPlace& place, double distance_m) {
+Window reach_of(const DemSource& source, const Georeference& georeference, const GridPlace& place,
+                double distance_m) {
   const Window all = source.window();
   if (!(distance_m < kFarthest_m)) return all;
-  // Grown until the cells' own sizes put its rim beyond the distance; cells shrink towards poles and in Mercator.
+  // Grown until the cells' own sizes put its rim beyond the distance; cells shrink towards poles and in
+  // Mercator.
   const double margin = 1.1;
-  const auto half = [&](double cell) { return static_cast<int>(std::min(std::ceil(margin * distance_m / cell) + 2, 2e9 / 4)); };
+  const auto half = [&](double cell) {
+    return static_cast<int>(std::min(std::ceil(margin * distance_m / cell) + 2, 2e9 / 4));
+  };
   const auto smallest = [&](const Window& rows, bool along_row) {
     double least = 1e300;
     for (const int row : {rows.row, rows.row + rows.rows / 2, rows.row_end() - 1}) {
@@ -108,7 +120,8 @@ Window reach_of(const DemSource& source, const Georeference& georeference, const
   return intersection({place.base_col - across, rows.row, 2 * across + 2, rows.rows}, all);
 }
 
-Window samples_within(const ObserverFrame& frame, const GridPlace& place, const Window& reach, double distance_m) {
+Window samples_within(const ObserverFrame& frame, const GridPlace& place, const Window& reach,
+                      double distance_m) {
   Window w = reach;
   const auto near = [&](int col, int row) {
     return frame.at(col - place.base_col, row - place.base_row).distance() <= distance_m;
@@ -136,12 +149,14 @@ ObserverFrame frame_of(const Georeference& georeference, const GridPlace& place,
   return ObserverFrame(from_base(georeference, place), place.col, place.row, from_base(reach, place));
 }
 
-ObserverFrames frames_of(const DemSource& source, const Georeference& georeference, const GridPlace& place, const Window& reach) {
-  return ObserverFrames(from_base(georeference, place), place.col, place.row, from_base(source.window(), place),
-                        from_base(reach, place));
+ObserverFrames frames_of(const DemSource& source, const Georeference& georeference, const GridPlace& place,
+                         const Window& reach) {
+  return ObserverFrames(from_base(georeference, place), place.col, place.row,
+                        from_base(source.window(), place), from_base(reach, place));
 }
 
-Window lines_window(const DemSource& source, const ObserverFrame& frame, const GridPlace& place, const Window& targets) {
+Window lines_window(const DemSource& source, const ObserverFrame& frame, const GridPlace& place,
+                    const Window& targets) {
   const Window straight = bounding(targets, {place.base_col, place.base_row, 2, 2});
   // How far lines to the rim of the targets bow, with as much again to be sure.
   double bow = 0;
@@ -160,8 +175,9 @@ Window lines_window(const DemSource& source, const ObserverFrame& frame, const G
     }
   }
   const int margin = 2 + static_cast<int>(std::ceil(2 * bow));
-  return intersection({straight.col - margin, straight.row - margin, straight.cols + 2 * margin, straight.rows + 2 * margin},
-                      source.window());
+  return intersection(
+      {straight.col - margin, straight.row - margin, straight.cols + 2 * margin, straight.rows + 2 * margin},
+      source.window());
 }
 
 }  // namespace sightbound

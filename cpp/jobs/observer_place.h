@@ -25,8 +25,8 @@ struct GridPlace {
   double whole_row() const { return base_row + row; }
 };
 
-// Throws InvalidInput when (x, y) is outside the DEM. In the outer half of a border cell the place on the rim of the
-// samples is taken, since the terrain ends there.
+// Throws InvalidInput when (x, y) is outside the DEM. In the outer half of a border cell the place on the rim
+// of the samples is taken, since the terrain ends there.
 GridPlace place_on(const DemSource&, double x, double y, const std::string& name);
 
 // All samples within `distance_m` of the place (and some more), in the whole raster.
@@ -35,12 +35,14 @@ Window reach_of(const DemSource&, const Georeference&, const GridPlace&, double 
 // The smallest part of `reach` that holds every sample within `distance_m`.
 Window samples_within(const ObserverFrame&, const GridPlace&, const Window& reach, double distance_m);
 
-// The observer's frame over `reach` (whole raster), in coordinates from his base sample: a function of place and reach.
+// The observer's frame over `reach` (whole raster), in coordinates from his base sample: a function of place
+// and reach.
 ObserverFrame frame_of(const Georeference&, const GridPlace&, const Window& reach);
 // The same as rings, a function of place and raster alone as far as they reach.
 ObserverFrames frames_of(const DemSource&, const Georeference&, const GridPlace&, const Window& reach);
 
-// What must be in memory for lines from the observer to anywhere in `targets`: both, and room for lines that bow.
+// What must be in memory for lines from the observer to anywhere in `targets`: both, and room for lines that
+// bow.
 Window lines_window(const DemSource&, const ObserverFrame&, const GridPlace&, const Window& targets);
 
 }  // namespace sightbound

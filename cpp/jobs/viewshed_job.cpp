@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Method. Place every observer, plan windows and memory, learn the error once; then load terrain (once for observers whose
-// windows lie together, else for one after the other) and paint every observer's view on one canvas.
+// Method. Place every observer, plan windows and memory, learn the error once; then load terrain (once for
+// observers whose windows lie together, else for one after the other) and paint every observer's view on one
+// canvas.
 #include "jobs/viewshed_job.h"
 
 #include <algorithm>
@@ -49,7 +50,8 @@ std::vector<Post> place_observers(const DemSource& source, const Georeference& g
     const double limit = o.max_distance + kOnTheLimit * larger_side;
     const Window reach = samples_within(frames.widest(), place, around, limit);
     const Window targets = intersection(reach, asked);
-    const Window lines = targets.empty() ? Window{place.base_col, place.base_row, 1, 1} : lines_window(source, frames.widest(), place, targets);
+    const Window lines = targets.empty() ? Window{place.base_col, place.base_row, 1, 1}
+                                         : lines_window(source, frames.widest(), place, targets);
     posts.push_back({o, name, place, reach, targets, lines, std::move(frames)});
     progress.check();
   }
@@ -79,21 +81,33 @@ Plan plan_memory(const std::vector<Post>& posts, const ErrorModel& model, const 
                                (options.heights ? 2 * sizeof(float) : 0);
   const std::size_t canvas_bytes = plan.canvas.cells() * per_cell;
   const std::size_t together_bytes = LoadedTerrain::memory(plan.terrain, model, options).peak;
-  constexpr std::size_t kWorthwhile = 2;  // reading twice the cells once beats many small windows' halos and set-up
-  plan.together = plan.terrain.cells() <= kWorthwhile * separate_cells && canvas_bytes + together_bytes <= budget.bytes();
+  constexpr std::size_t kWorthwhile =
+      2;  // reading twice the cells once beats many small windows' halos and set-up
+  plan.together =
+      plan.terrain.cells() <= kWorthwhile * separate_cells && canvas_bytes + together_bytes <= budget.bytes();
   plan.bytes = canvas_bytes + (plan.together ? together_bytes : separate_bytes);
   budget.require(plan.bytes,
-                 "A viewshed of " + std::to_string(plan.canvas.cols) + " x " + std::to_string(plan.canvas.rows) + " cells",
-                 "Give a smaller max_distance or an extent, ask for one result per observer, or allow a larger memory_budget.");
+                 "A viewshed of " + std::to_string(plan.canvas.cols) + " x " +
+                     std::to_string(plan.canvas.rows) + " cells",
+                 "Give a smaller max_distance or an extent, ask for one result per observer, or allow a "
+                 "larger memory_budget.");
   return plan;
 }
 
 class Run {
  public:
-  Run(const DemSource& source, const Georeference& georeference, const ErrorModel& model, const ViewshedOptions& options,
-      const Workers& workers, Canvas& canvas, const Window& canvas_window, ViewshedReport& report, Progress& progress)
-      : source_(source), georeference_(georeference), model_(model), options_(options), workers_(workers), canvas_(canvas),
-        canvas_window_(canvas_window), report_(report), progress_(progress) {}
+  Run(const DemSource& source, const Georeference& georeference, const ErrorModel& model,
+      const ViewshedOptions& options, const Workers& workers, Canvas& canvas, const Window& canvas_window,
+      ViewshedReport& report, Progress& progress)
+      : source_(source),
+        georeference_(georeference),
+        model_(model),
+        options_(options),
+        workers_(workers),
+        canvas_(canvas),
+        canvas_window_(canvas_window),
+        report_(report),
+        progress_(progress) {}
 
   void together(const std::vector<Post>& posts, const Window& window, double share) {
     progress_.begin(share / 4, 1);
@@ -121,7 +135,8 @@ class Run {
   }
 
   LoadedTerrain load(const Window& window) {
-    return LoadedTerrain(source_, georeference_, with_room(window), model_, options_, report_.warnings, workers_, progress_);
+    return LoadedTerrain(source_, georeference_, with_room(window), model_, options_, report_.warnings,
+                         workers_, progress_);
   }
 
   // A surface needs two samples each way.
@@ -142,25 +157,36 @@ class Run {
     out.status = "ok";
     out.ground_height = interpolate(terrain.ground(), col, row);
     if (std::isnan(out.ground_height) || std::isnan(interpolate(terrain.scene().heights, col, row))) {
-      throw InvalidInput(post.name + " stands where the DEM has no height (nodata). Move it, or fill the hole first.");
+      throw InvalidInput(post.name +
+                         " stands where the DEM has no height (nodata). Move it, or fill the hole first.");
     }
     const bool absolute = options_.height_reference == HeightReference::kAbsolute;
     out.eye_height = absolute ? o.height : out.ground_height + o.height;
     const double below = interpolate(terrain.scene().heights, col, row) - out.eye_height;
     if (below > 0) {
       out.status = "eye below the terrain";
-      report_.warnings.push_back(post.name + ": the eye is " + std::to_string(below) + " m below the terrain; it sees nothing.");
+      report_.warnings.push_back(post.name + ": the eye is " + std::to_string(below) +
+                                 " m below the terrain; it sees nothing.");
     }
 
     View view{terrain.scene(), {}, {}, terrain.ground(), terrain.cell_areas(), {}};
     const SampleField& sampling = terrain.scene().error.sampling;
-    view.eye = {&post.frames.widest(), post.place.base_col - window.col, post.place.base_row - window.row, out.eye_height,
-                sampling.is_constant() ? static_cast<double>(sampling.constant()) : interpolate(sampling.values(), col, row),
+    view.eye = {&post.frames.widest(),
+                post.place.base_col - window.col,
+                post.place.base_row - window.row,
+                out.eye_height,
+                sampling.is_constant() ? static_cast<double>(sampling.constant())
+                                       : interpolate(sampling.values(), col, row),
                 &post.frames};
     view.tops = {absolute ? nullptr : &terrain.ground(), o.target_height};
     // Distances are good to 1e-6 cells: a cell on the limit is within it.
     const double on_the_limit = kOnTheLimit * terrain.scene().error.larger_side_m;
-    view.limits = {o.min_distance - on_the_limit, o.max_distance + on_the_limit, o.azimuth_from, o.azimuth_to, o.angle_from, o.angle_to};
+    view.limits = {o.min_distance - on_the_limit,
+                   o.max_distance + on_the_limit,
+                   o.azimuth_from,
+                   o.azimuth_to,
+                   o.angle_from,
+                   o.angle_to};
     canvas_.move_to(canvas_window_.col - window.col, canvas_window_.row - window.row);
     const ViewTotals seen = viewshed(view, canvas_, workers_, progress_);
     canvas_.next_observer();
@@ -184,8 +210,8 @@ class Run {
 };
 
 // Areas of the combined verdict. One observer's are those already counted.
-void total_areas(const DemSource& source, const Georeference& georeference, const Window& window, const Canvas& canvas,
-                 ViewshedReport& report) {
+void total_areas(const DemSource& source, const Georeference& georeference, const Window& window,
+                 const Canvas& canvas, ViewshedReport& report) {
   if (report.observers.size() == 1) {
     const ObserverReport& only = report.observers.front();
     report.visible_m2 = only.visible_m2;
@@ -193,7 +219,8 @@ void total_areas(const DemSource& source, const Georeference& georeference, cons
     report.hidden_m2 = only.hidden_m2;
     return;
   }
-  const std::vector<CellSize> sizes = ground_cell_sizes(georeference, {0, window.row, source.cols(), window.rows});
+  const std::vector<CellSize> sizes =
+      ground_cell_sizes(georeference, {0, window.row, source.cols(), window.rows});
   for (int r = 0; r < window.rows; ++r) {
     std::array<std::uint64_t, 256> cells{};
     for (int c = 0; c < window.cols; ++c) ++cells[canvas.verdict.at(r, c)];
@@ -207,8 +234,8 @@ void total_areas(const DemSource& source, const Georeference& georeference, cons
 
 }  // namespace
 
-ViewshedResult run_viewshed(const DemSource& source, const std::vector<Observer>& observers, const ErrorModel& model,
-                            const ViewshedOptions& options, Progress& progress) {
+ViewshedResult run_viewshed(const DemSource& source, const std::vector<Observer>& observers,
+                            const ErrorModel& model, const ViewshedOptions& options, Progress& progress) {
   validate(options);
   model.validate();
   if (observers.empty()) throw InvalidInput("observers is empty; give at least one.");

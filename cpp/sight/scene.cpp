@@ -28,7 +28,8 @@ double least_sampling(const SampleField& sampling) {
 
 }  // namespace
 
-Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const SceneOptions& options, const Workers& workers)
+Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const SceneOptions& options,
+             const Workers& workers)
     : heights(heights_in),
       error(error_in),
       quantile(two_sided_quantile(options.confidence)),
@@ -37,8 +38,10 @@ Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const Sc
       ends_move(options.ends_move),
       see_across_nodata(options.see_across_nodata),
       end_zone_m(kEndZoneCells * error_in.larger_side_m),
-      uniform(error_in.sampling.is_constant() && error_in.amplitude.is_constant() && error_in.amplitude.constant() == 0),
-      highest(heights_in.rows(), heights_in.cols(), [&](int r, float*) { return heights_in.row(r); }, workers),
+      uniform(error_in.sampling.is_constant() && error_in.amplitude.is_constant() &&
+              error_in.amplitude.constant() == 0),
+      highest(
+          heights_in.rows(), heights_in.cols(), [&](int r, float*) { return heights_in.row(r); }, workers),
       least_sigma(std::max(least_sampling(error_in.sampling), kLeastSigma)),
       largest_profile_(most_growth(error_in)) {
   if (uniform) return;
@@ -46,7 +49,8 @@ Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const Sc
       heights.rows(), heights.cols(),
       [&](int r, float* buffer) {
         for (int c = 0; c < heights.cols(); ++c) {
-          buffer[c] = std::nextafter(static_cast<float>(sigma_bound(r, c)), std::numeric_limits<float>::max());
+          buffer[c] =
+              std::nextafter(static_cast<float>(sigma_bound(r, c)), std::numeric_limits<float>::max());
         }
         return buffer;
       },

@@ -47,10 +47,11 @@ Critical SightLine::settle(std::span<const MajorRange> open, double hint) const 
   return {std::max(search.objective().best(), -scene_.largest_ratio), search.critical_xi(), search.hole()};
 }
 
-double SightLine::needed_height(double k, double floor, double hint) const {
+double SightLine::needed_height(double k, double floor, double& hint) const {
   if (span_ == 0) return floor;
   Search search(*this, NeededHeight(*this, k, floor));
   search.all(hint);
+  hint = search.critical_xi();
   return search.objective().best();
 }
 

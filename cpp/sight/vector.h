@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the hot loops are written once for every processor. Marked functions are compiled several times and the best version
-// for the machine is taken when the program starts; none of them reorders or contracts an operation.
+// How the hot loops are written once for every processor. Marked functions are compiled several times and the
+// best version for the machine is taken when the program starts; none of them reorders or contracts an
+// operation.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(SIGHTBOUND_SCALAR)

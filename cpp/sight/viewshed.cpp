@@ -19,7 +19,8 @@ inline void Canvas::put(int row, int col, float p, std::uint8_t claim) {
   float& p_before = confidence.at(r, c);
   std::uint8_t& claim_before = verdict.at(r, c);
   if (claim_before == kNoVerdict || (best_ ? p > p_before : p < p_before)) p_before = p;
-  if (claim_before == kNoVerdict || (best_ ? claim > claim_before : claim < claim_before)) claim_before = claim;
+  if (claim_before == kNoVerdict || (best_ ? claim > claim_before : claim < claim_before))
+    claim_before = claim;
   if (count.empty()) return;
   std::uint32_t& n = count.at(r, c);
   if (n == kNoCount) n = 0;
@@ -58,21 +59,25 @@ class Painter {
 
   void paint(const FanColumn& column, const WedgeFan::OpenPartsOf& open_parts) {
     const ViewLimits& limits = view_.limits;
-    const bool by_place = column.least_distance < limits.min_distance || column.most_distance > limits.max_distance ||
-                          !limits.all_azimuths() || !limits.all_angles();
+    const bool by_place = column.least_distance < limits.min_distance ||
+                          column.most_distance > limits.max_distance || !limits.all_azimuths() ||
+                          !limits.all_angles();
     const bool plain = !by_place && !canvas_.has_heights();  // hidden is all there is to say of most
     // The part on the canvas.
     const Window& window = canvas_.window();
-    const int first = column.transposed ? window.col : window.row, end = column.transposed ? window.col_end() : window.row_end();
+    const int first = column.transposed ? window.col : window.row,
+              end = column.transposed ? window.col_end() : window.row_end();
     const int major_first = column.transposed ? window.row : window.col;
     const int major_end = column.transposed ? window.row_end() : window.col_end();
     if (column.major < major_first || column.major >= major_end) return;
-    const int from = std::max(first - column.first_minor, 0), to = std::min(end - column.first_minor, column.count);
+    const int from = std::max(first - column.first_minor, 0),
+              to = std::min(end - column.first_minor, column.count);
 
     double hint = -1;
     for (int i = from; i < to; ++i) {
       const int minor = column.first_minor + i;
-      const int row = column.transposed ? column.major : minor, col = column.transposed ? minor : column.major;
+      const int row = column.transposed ? column.major : minor,
+                col = column.transposed ? minor : column.major;
       const bool hidden = column.state[i] == kSurelyHidden;
       if (plain && hidden) {
         int run = 1;
@@ -107,8 +112,9 @@ class Painter {
   void finish() { progress_.advance(work_); }
 
  private:
-  static constexpr double kReportEvery = 4096;  // cells; a fraction of a millisecond, tens of them when all are settled
-  static constexpr double kSettleCost = 5;      // in cells, for the pace of the progress alone
+  static constexpr double kReportEvery =
+      4096;  // cells; a fraction of a millisecond, tens of them when all are settled
+  static constexpr double kSettleCost = 5;  // in cells, for the pace of the progress alone
 
   Target target(int row, int col) const {
     return {static_cast<double>(col - view_.eye.base_col), static_cast<double>(row - view_.eye.base_row),
@@ -144,8 +150,8 @@ class Painter {
     }
     if (!hidden) ++totals_.settled;
     if (canvas_.has_heights()) {
-      const double certain = line.needed_height(scene_.quantile, base_ground, hint);
-      const double likely = line.needed_height(0, base_ground, hint);
+      const double likely = line.needed_height(0, base_ground, likely_hint_);
+      const double certain = line.needed_height(scene_.quantile, base_ground, certain_hint_);
       const auto above = [&](double z) { return static_cast<float>(z - base_ground); };
       canvas_.put_heights(row, col, above(certain), above(likely));
     }
@@ -155,7 +161,9 @@ class Painter {
   void put(int row, int col, double k) {
     const std::uint8_t claim = verdict(scene_, k);
     canvas_.put(row, col, probability(scene_, k), claim);
-    (claim == kVisible ? totals_.visible_m2 : claim == kHidden ? totals_.hidden_m2 : totals_.uncertain_m2) += area(row);
+    (claim == kVisible  ? totals_.visible_m2
+     : claim == kHidden ? totals_.hidden_m2
+                        : totals_.uncertain_m2) += area(row);
   }
 
   double area(int row) const { return view_.cell_areas[static_cast<std::size_t>(row)]; }
@@ -165,6 +173,7 @@ class Painter {
   Canvas& canvas_;
   Progress& progress_;
   ViewTotals totals_;
+  double likely_hint_ = -1, certain_hint_ = -1;  // where a neighbour's heights were decided
   double work_ = 0;
 };
 
@@ -237,7 +246,9 @@ ViewTotals viewshed(const View& view, Canvas& canvas, const Workers& workers, Pr
   }
   workers.for_each(fan.blocks(), [&](std::size_t block) {
     Painter painter(view, canvas, progress);
-    fan.march(block, [&](const FanColumn& column, const WedgeFan::OpenPartsOf& open) { painter.paint(column, open); });
+    fan.march(block, [&](const FanColumn& column, const WedgeFan::OpenPartsOf& open) {
+      painter.paint(column, open);
+    });
     painter.finish();
     totals[block] = painter.totals();
   });

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The viewshed of one observer on one scene: bracket everything by the sweep, settle exactly what straddles.
 //
-// Confidence and verdict of a cell are functions of observer and target alone: the same bits for any number of threads, any
-// window in memory, any part of it asked for. Cost: near O(cells); a settled cell costs about a microsecond.
+// Confidence and verdict of a cell are functions of observer and target alone: the same bits for any number
+// of threads, any window in memory, any part of it asked for. Cost: near O(cells); a settled cell costs about
+// a microsecond.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +26,8 @@ struct ViewLimits {
   bool admits_azimuth(double azimuth_deg) const;
 };
 
-// Several observers' answers put together cell by cell: best = seen by any, worst = seen by all that have the cell in range.
+// Several observers' answers put together cell by cell: best = seen by any, worst = seen by all that have the
+// cell in range.
 class Canvas {
  public:
   // `window` is in the scene's grid.
@@ -51,10 +53,11 @@ class Canvas {
   void seal_heights();
   void flip_rows();
 
-  Grid<float> confidence;                     // NaN = nobody asked
+  Grid<float> confidence;  // NaN = nobody asked
   Grid<std::uint8_t> verdict;
-  Grid<std::uint32_t> count;                  // empty unless counting
-  Grid<float> certain_height, likely_height;  // metres above ground; NaN = nobody asked, infinite = none is sure
+  Grid<std::uint32_t> count;  // empty unless counting
+  Grid<float> certain_height,
+      likely_height;  // metres above ground; NaN = nobody asked, infinite = none is sure
 
  private:
   Window window_;
@@ -73,7 +76,7 @@ struct View {
   const Scene& scene;
   Eye eye;
   TargetTops tops;
-  const Grid<float>& ground;  // what heights above ground refer to, on the scene's grid
+  const Grid<float>& ground;           // what heights above ground refer to, on the scene's grid
   std::span<const double> cell_areas;  // square metres, one per row of the scene's grid
   ViewLimits limits;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notation: step = major steps from the observer; edges a, b = the two geodesics that bound a block; between them wedge edges
-// are interpolated linearly, the geodesic in the middle tells by how much that can be wrong. tau = distance over metres per
-// step at the observer, the measure in which a wedge's slopes are compared.
+// Notation: step = major steps from the observer; edges a, b = the two geodesics that bound a block; between
+// them wedge edges are interpolated linearly, the geodesic in the middle tells by how much that can be wrong.
+// tau = distance over metres per step at the observer, the measure in which a wedge's slopes are compared.
 #include "sight/wedge_fan.h"
 
 #include <algorithm>
@@ -14,14 +14,16 @@ namespace sightbound {
 
 namespace {
 
-constexpr int kBlocksPerUnit = 16;    // blocks per unit of slope: enough tasks for many threads, enough wedges for vectors
+constexpr int kBlocksPerUnit =
+    16;  // blocks per unit of slope: enough tasks for many threads, enough wedges for vectors
 constexpr int kLeastWedges = kVector;  // per block
-constexpr double kWedgesPerCell = 1;  // at least so many wedges cross a cell side
-constexpr int kLeastPart = 16;        // columns an upper horizon stands for, at least
+constexpr double kWedgesPerCell = 1;   // at least so many wedges cross a cell side
+constexpr int kLeastPart = 16;         // columns an upper horizon stands for, at least
 constexpr int kMostParts = 128;
-constexpr double kFirstBelow = 0.5;   // steps from the observer where the lower horizon begins
-constexpr double kFirstAbove = 2;     // ... and the upper one: nearer, a corner's slope says nothing
-constexpr double kInterpolation = 2;  // safety on the error of interpolating between two geodesics, measured half way
+constexpr double kFirstBelow = 0.5;  // steps from the observer where the lower horizon begins
+constexpr double kFirstAbove = 2;    // ... and the upper one: nearer, a corner's slope says nothing
+constexpr double kInterpolation =
+    2;  // safety on the error of interpolating between two geodesics, measured half way
 
 // A quantity along the block's three geodesics at one column.
 struct Fan3 {
@@ -45,7 +47,8 @@ class WedgeFan::March {
       : scene_(fan.scene_), eye_(fan.eye_), tops_(fan.tops_), block_(block), wedges_(kLeastWedges) {
     const double low = static_cast<double>(block.index) / kBlocksPerUnit, width = 1.0 / kBlocksPerUnit;
     for (std::size_t i = 0; i < 3; ++i) {
-      rays_[i] = eye_.frame->ray(block.transposed, block.sign, low + static_cast<double>(i) * width / 2, block.reach);
+      rays_[i] = eye_.frame->ray(block.transposed, block.sign, low + static_cast<double>(i) * width / 2,
+                                 block.reach);
     }
     base_major_ = block.transposed ? eye_.base_row : eye_.base_col;
     base_minor_ = block.transposed ? eye_.base_col : eye_.base_row;
@@ -65,8 +68,10 @@ class WedgeFan::March {
   }
 
   void run(double reach_m, const Visitor& visit) {
-    int major = block_.sign > 0 ? static_cast<int>(std::floor(major0_)) + 1 : static_cast<int>(std::ceil(major0_)) - 1;
-    ColumnPlace before = place(major - 2 * block_.sign), near = place(major - block_.sign), here = place(major);
+    int major = block_.sign > 0 ? static_cast<int>(std::floor(major0_)) + 1
+                                : static_cast<int>(std::ceil(major0_)) - 1;
+    ColumnPlace before = place(major - 2 * block_.sign), near = place(major - block_.sign),
+                here = place(major);
     Column before_column, near_column, column;
     for (; here.major + base_major_ >= 0 && here.major + base_major_ < majors_; major += block_.sign) {
       if (here.distance.low() > reach_m) return;
@@ -81,7 +86,8 @@ class WedgeFan::March {
         split(here.step);
         lower(here, column);
       }
-      // The upper horizon stays two columns behind the targets: nearer places are judged without the measurement error.
+      // The upper horizon stays two columns behind the targets: nearer places are judged without the
+      // measurement error.
       raise(before, near, before_column, near_column);
       std::swap(before_column, near_column);
       std::swap(near_column, column);
@@ -104,7 +110,8 @@ class WedgeFan::March {
     p.step = std::max(block_.sign * (major - major0_), 0.0);
     const auto three = [](auto f) { return Fan3{f(0), f(1), f(2)}; };
     p.minor = three([&](std::size_t i) { return rays_[i].minor(p.step); });
-    const std::array distance{rays_[0].distance(p.step), rays_[1].distance(p.step), rays_[2].distance(p.step)};
+    const std::array distance{rays_[0].distance(p.step), rays_[1].distance(p.step),
+                              rays_[2].distance(p.step)};
     p.distance = three([&](std::size_t i) { return distance[i]; });
     p.tau = three([&](std::size_t i) { return distance[i] / rays_[i].metres_per_step(); });
     p.square = three([&](std::size_t i) { return distance[i] * distance[i]; });
@@ -120,7 +127,8 @@ class WedgeFan::March {
     double low = 1e300, high = 0;
     for (const GeodesicRay& ray : rays_) {
       for (const double share : {0.02, 0.25, 0.5, 0.75, 1.0}) {
-        const double step = share * block_.reach, major = major0_ + block_.sign * step, minor = ray.minor(step);
+        const double step = share * block_.reach, major = major0_ + block_.sign * step,
+                     minor = ray.minor(step);
         if (share > 0.02 && (minor < -base_minor_ || minor > minors_ - 1 - base_minor_)) continue;
         const FramePlace at = block_.transposed ? eye_.frame->at(minor, major) : eye_.frame->at(major, minor);
         const double square = at.east * at.east + at.north * at.north;
@@ -137,7 +145,8 @@ class WedgeFan::March {
     const double step = (p.square.b - p.square.a) / wedges_;
     const double slack = std::abs(step) + p.square.bend();
     const double curvature = high ? curvature_high_ : curvature_low_;
-    return {static_cast<float>(curvature * (p.square.a + (high ? slack : -slack))), static_cast<float>(curvature * step)};
+    return {static_cast<float>(curvature * (p.square.a + (high ? slack : -slack))),
+            static_cast<float>(curvature * step)};
   }
 
   Linear edges(const ColumnPlace& p, int first) const {
@@ -145,7 +154,9 @@ class WedgeFan::March {
   }
 
   static float largest_inverse(const ColumnPlace& p) { return static_cast<float>((1 + 1e-6) / p.tau.low()); }
-  static float smallest_inverse(const ColumnPlace& p) { return static_cast<float>((1 - 1e-6) / p.tau.high()); }
+  static float smallest_inverse(const ColumnPlace& p) {
+    return static_cast<float>((1 - 1e-6) / p.tau.high());
+  }
 
   void load(const ColumnPlace& near, const ColumnPlace& here, const ColumnPlace& next, Column& column) {
     constexpr int kMargin = 3;  // rows beyond the edges: pads and the cell around an edge
@@ -184,7 +195,8 @@ class WedgeFan::March {
   }
 
   // A column of a grid, `outside` where the grid has none.
-  void copy(const Grid<float>& from, int major, const Column& column, std::vector<float>& to, float outside) const {
+  void copy(const Grid<float>& from, int major, const Column& column, std::vector<float>& to,
+            float outside) const {
     const int minor = column.first + base_minor_, begin = std::clamp(-minor, 0, column.rows);
     const int end = std::clamp(minors_ - minor, begin, column.rows);
     std::fill_n(to.begin(), begin, outside);
@@ -217,14 +229,16 @@ class WedgeFan::March {
     }
     for (int j = 0; j < column.rows; ++j) {
       const auto at = static_cast<std::size_t>(j);
-      const float slack = height_pad_ + (scene_.ends_move ? static_cast<float>(scene_.largest_ratio) * sampling_[at] : 0);
+      const float slack =
+          height_pad_ + (scene_.ends_move ? static_cast<float>(scene_.largest_ratio) * sampling_[at] : 0);
       column.top_above[at] = z_[at] + height - slack;
       column.top_below[at] = z_[at] + height + slack;
     }
   }
 
   void targets(const ColumnPlace& here, const Column& column, const Visitor& visit) {
-    // Rows between the block's edges, on this side's half of the diagonals (the diagonals belong to the columns' sides).
+    // Rows between the block's edges, on this side's half of the diagonals (the diagonals belong to the
+    // columns' sides).
     int low = static_cast<int>(std::ceil(here.minor.a)), high = static_cast<int>(std::ceil(here.minor.b));
     const auto mine = [&](int minor) {
       const double off = std::abs(minor - minor0_), along = std::abs(here.major - major0_);
@@ -262,10 +276,13 @@ class WedgeFan::March {
     out.state = states_.data();
     out.least_distance = here.distance.low();
     out.most_distance = here.distance.high();
-    visit(out, [&](int i) { return open_parts(step, i, column.top_above[static_cast<std::size_t>(step.first_row + i)], out.major); });
+    visit(out, [&](int i) {
+      return open_parts(step, i, column.top_above[static_cast<std::size_t>(step.first_row + i)], out.major);
+    });
   }
 
-  // Everything from the observer to where the upper horizon begins, the parts it does not clear, and what it has not reached.
+  // Everything from the observer to where the upper horizon begins, the parts it does not clear, and what it
+  // has not reached.
   OpenParts open_parts(const TargetStep& step, int i, float top_above, int target_major) {
     ranges_.clear();
     const WedgePair wedge = wedges_of(step, i);
@@ -274,8 +291,10 @@ class WedgeFan::March {
     const int observer = static_cast<int>(std::floor(major0_)) + base_major_ + (block_.sign < 0 ? 1 : 0);
     add_range(observer, (parts_.empty() ? target_major : parts_.front().from + base_major_));
     for (const Part& part : parts_) {
-      const float reaches = std::max(part.above[static_cast<std::size_t>(wedge.a)], part.above[static_cast<std::size_t>(wedge.b)]);
-      if (thin || !(reaches + 1e-6f * std::abs(reaches) < slope)) add_range(part.from + base_major_, part.to + base_major_);
+      const float reaches = std::max(part.above[static_cast<std::size_t>(wedge.a)],
+                                     part.above[static_cast<std::size_t>(wedge.b)]);
+      if (thin || !(reaches + 1e-6f * std::abs(reaches) < slope))
+        add_range(part.from + base_major_, part.to + base_major_);
     }
     if (!parts_.empty()) add_range(parts_.back().to + base_major_, target_major);
     return ranges_;
@@ -327,11 +346,13 @@ class WedgeFan::March {
     return static_cast<int>(std::bit_width(steps)) - std::numeric_limits<unsigned>::digits;
   }
 
-  void raise(const ColumnPlace& near, const ColumnPlace& here, const Column& near_column, const Column& column) {
+  void raise(const ColumnPlace& near, const ColumnPlace& here, const Column& near_column,
+             const Column& column) {
     if (near.step < kFirstAbove) return;
     const int number = part_number(here.major);
     if (parts_.empty() || parts_.back().number != number) {
-      parts_.push_back({number, near.major, near.major, std::vector<float>(static_cast<std::size_t>(wedges_), -kUnbounded)});
+      parts_.push_back({number, near.major, near.major,
+                        std::vector<float>(static_cast<std::size_t>(wedges_), -kUnbounded)});
     }
     Part& part = parts_.back();
     part.to = here.major;
@@ -391,13 +412,16 @@ WedgeFan::WedgeFan(const Scene& scene, const Eye& eye, const TargetTops& tops, d
 
 void WedgeFan::add_side(bool transposed, int sign) {
   const ObserverFrame& frame = *eye_.frame;
-  const double major0 = transposed ? frame.row() : frame.col(), minor0 = transposed ? frame.col() : frame.row();
-  const int base_major = transposed ? eye_.base_row : eye_.base_col, base_minor = transposed ? eye_.base_col : eye_.base_row;
+  const double major0 = transposed ? frame.row() : frame.col(),
+               minor0 = transposed ? frame.col() : frame.row();
+  const int base_major = transposed ? eye_.base_row : eye_.base_col,
+            base_minor = transposed ? eye_.base_col : eye_.base_row;
   const int majors = transposed ? scene_.heights.rows() : scene_.heights.cols();
   const int minors = transposed ? scene_.heights.cols() : scene_.heights.rows();
   const double reach = sign > 0 ? majors - 1 - base_major - major0 : major0 + base_major;
   if (reach <= 0) return;
-  // A geodesic to a cell on the diagonal may leave the observer a little steeper than 1: some blocks more, where needed.
+  // A geodesic to a cell on the diagonal may leave the observer a little steeper than 1: some blocks more,
+  // where needed.
   double steepest = 1;
   for (const int side : {1, -1}) {
     const double across = side > 0 ? minors - 1 - base_minor - minor0 : minor0 + base_minor;
@@ -405,11 +429,13 @@ void WedgeFan::add_side(bool transposed, int sign) {
     for (const double share : {0.25, 0.5, 0.75, 1.0}) {
       const double major = major0 + sign * along * share, minor = minor0 + side * along * share;
       if (along * share <= 0) continue;
-      const GeodesicPath path = frame.path_to(transposed ? minor : major, transposed ? major : minor, transposed);
+      const GeodesicPath path =
+          frame.path_to(transposed ? minor : major, transposed ? major : minor, transposed);
       steepest = std::max(steepest, std::abs(path.minor_slope(0) / (along * share)));
     }
   }
-  const int extra = steepest > 1 + 1e-9 ? static_cast<int>(std::ceil((steepest - 1) * kBlocksPerUnit)) + 1 : 1;
+  const int extra =
+      steepest > 1 + 1e-9 ? static_cast<int>(std::ceil((steepest - 1) * kBlocksPerUnit)) + 1 : 1;
   for (int index = -kBlocksPerUnit - extra; index < kBlocksPerUnit + extra; ++index) {
     blocks_.push_back({transposed, sign, index, std::max(reach, 1.0)});
   }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sweep's bracket: neighbouring geodesics from the observer march outward together, one column at a time, and carry for
-// every wedge between two of them an upper and a lower bound of its horizon. Most targets are proven hidden by them alone.
+// The sweep's bracket: neighbouring geodesics from the observer march outward together, one column at a time,
+// and carry for every wedge between two of them an upper and a lower bound of its horizon. Most targets are
+// proven hidden by them alone.
 //
-// Upper bound at +K sigma: the highest cell the wedge touches. Lower bound at -K sigma: the lowest place of each column
-// line within the wedge. Neither depends on the window in memory, and neither decides anything but what is certain.
-// Cost: about two wedge steps a cell; memory: three floats a wedge of one block (some kilobytes a thread).
+// Upper bound at +K sigma: the highest cell the wedge touches. Lower bound at -K sigma: the lowest place of
+// each column line within the wedge. Neither depends on the window in memory, and neither decides anything
+// but what is certain. Cost: about two wedge steps a cell; memory: three floats a wedge of one block (some
+// kilobytes a thread).
 #pragma once
 
 #include <cstddef>
@@ -29,13 +31,14 @@ struct TargetTops {
 // Neighbouring targets of one column (row, when transposed) with what the bracket says of them.
 struct FanColumn {
   bool transposed = false;
-  int major = 0;                        // of the scene's grid
+  int major = 0;  // of the scene's grid
   int first_minor = 0, count = 0;
-  const std::int32_t* state = nullptr;  // TargetState each
+  const std::int32_t* state = nullptr;           // TargetState each
   double least_distance = 0, most_distance = 0;  // metres, of all of them
 };
 
-// For an open target: the parts of its line that the upper horizon does not clear. Valid until the next is asked for.
+// For an open target: the parts of its line that the upper horizon does not clear. Valid until the next is
+// asked for.
 using OpenParts = std::span<const MajorRange>;
 
 class WedgeFan {
@@ -44,8 +47,9 @@ class WedgeFan {
   WedgeFan(const Scene&, const Eye&, const TargetTops&, double reach_m);
 
   std::size_t blocks() const { return blocks_.size(); }
-  // Visits every target of a block once, nearest column first. The blocks together cover every cell of the scene's grid
-  // within reach but the one the observer stands on exactly. Blocks are independent: any order, any thread.
+  // Visits every target of a block once, nearest column first. The blocks together cover every cell of the
+  // scene's grid within reach but the one the observer stands on exactly. Blocks are independent: any order,
+  // any thread.
   using OpenPartsOf = std::function<OpenParts(int i)>;  // of target i of the column
   using Visitor = std::function<void(const FanColumn&, const OpenPartsOf&)>;
   void march(std::size_t block, const Visitor& visit) const;
@@ -54,7 +58,7 @@ class WedgeFan {
   struct Block {
     bool transposed;
     int sign;
-    int index;   // slopes [index, index + 1] / kBlocksPerUnit
+    int index;     // slopes [index, index + 1] / kBlocksPerUnit
     double reach;  // major steps to the rim of the grid
   };
   class March;

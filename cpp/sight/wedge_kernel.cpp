@@ -6,7 +6,6 @@
 #include "error_model/error_model.h"
 #include "sight/vector.h"
 
-
 namespace sightbound {
 
 namespace {
@@ -21,7 +20,8 @@ inline int within(int value, int low, int high) {
 }  // namespace
 
 SIGHTBOUND_VECTOR
-void bound_column(const ColumnBounds& c, const float* __restrict z, float* __restrict above, float* __restrict below) {
+void bound_column(const ColumnBounds& c, const float* __restrict z, float* __restrict above,
+                  float* __restrict below) {
   const int count = whole_vectors(c.count);
   const float unknown = c.unknown, full = c.full, near_end = c.near_end, ratio = c.ratio, pad = c.pad;
   if (c.sampling == nullptr) {
@@ -44,7 +44,8 @@ void bound_column(const ColumnBounds& c, const float* __restrict z, float* __res
 
 SIGHTBOUND_VECTOR
 void raise_above(const WedgeStep& s, const float* __restrict cells, float* __restrict above) {
-  const float near_first = s.near.first, near_step = s.near.step, far_first = s.far.first, far_step = s.far.step;
+  const float near_first = s.near.first, near_step = s.near.step, far_first = s.far.first,
+              far_step = s.far.step;
   const float pad = s.pad, drop_first = s.drop_low.first, drop_step = s.drop_low.step, eye = s.eye_above;
   const float rising = s.near_least, falling = s.far_most;
   const int wedges = whole_vectors(s.wedges), last = s.rows - 2;
@@ -82,7 +83,8 @@ void raise_below(const WedgeStep& s, const float* __restrict line, float* __rest
 }
 
 SIGHTBOUND_VECTOR
-void highest_corners(int count, const float* __restrict near, const float* __restrict far, float* __restrict cells) {
+void highest_corners(int count, const float* __restrict near, const float* __restrict far,
+                     float* __restrict cells) {
   const int whole = whole_vectors(count);
   for (int j = 0; j < whole; ++j) cells[j] = larger(larger(near[j], near[j + 1]), larger(far[j], far[j + 1]));
 }

@@ -19,7 +19,9 @@ struct Window {
   int col_end() const { return col + cols; }
   int row_end() const { return row + rows; }
   bool empty() const { return cols <= 0 || rows <= 0; }
-  std::size_t cells() const { return empty() ? 0 : static_cast<std::size_t>(cols) * static_cast<std::size_t>(rows); }
+  std::size_t cells() const {
+    return empty() ? 0 : static_cast<std::size_t>(cols) * static_cast<std::size_t>(rows);
+  }
   bool contains(const Window& w) const {
     return w.col >= col && w.row >= row && w.col_end() <= col_end() && w.row_end() <= row_end();
   }
@@ -54,7 +56,8 @@ class Grid {
 
  public:
   Grid() = default;
-  Grid(int rows, int cols) : rows_(rows), cols_(cols), data_(static_cast<T*>(allocate_big(size() * sizeof(T)))) {}
+  Grid(int rows, int cols)
+      : rows_(rows), cols_(cols), data_(static_cast<T*>(allocate_big(size() * sizeof(T)))) {}
   Grid(int rows, int cols, T fill) : Grid(rows, cols) { std::fill_n(data_.get(), size(), fill); }
 
   int rows() const { return rows_; }

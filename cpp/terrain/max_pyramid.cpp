@@ -64,7 +64,8 @@ MaxPyramid::MaxPyramid(int sample_rows, int sample_cols, const RowSource& source
   holes_.emplace_back(rows, cols);
   std::atomic<bool> any_hole{false};
   workers.for_each(static_cast<std::size_t>(rows), [&](std::size_t r) {
-    if (finest_row(sample_rows, sample_cols, source, static_cast<int>(r), max_[0], holes_[0])) any_hole = true;
+    if (finest_row(sample_rows, sample_cols, source, static_cast<int>(r), max_[0], holes_[0]))
+      any_hole = true;
   });
   while (max_.back().rows() > 1 || max_.back().cols() > 1) {
     max_.push_back(halved(max_.back()));

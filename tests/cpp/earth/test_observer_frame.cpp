@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fitted frame against GeographicLib itself, on rasters in degrees (whose longitudes and latitudes need no projection).
-#include "earth/observer_frame.h"
-
-#include <gtest/gtest.h>
+// The fitted frame against GeographicLib itself, on rasters in degrees (whose longitudes and latitudes need
+// no projection).
+#include <cmath>
 
 #include <GeographicLib/Geodesic.hpp>
 #include <GeographicLib/GeodesicLine.hpp>
-#include <cmath>
+#include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "earth/observer_frame.h"
 
 namespace sightbound {
 namespace {
@@ -16,7 +16,8 @@ namespace {
 constexpr double kCell = 1.0 / 1200;  // degrees
 
 Georeference degrees_at(double latitude) {
-  return Georeference(Geotransform({10, kCell, 0, latitude, 0, -kCell}), Ellipsoid{}, [](std::span<double>, std::span<double>) {});
+  return Georeference(Geotransform({10, kCell, 0, latitude, 0, -kCell}), Ellipsoid{},
+                      [](std::span<double>, std::span<double>) {});
 }
 
 class FrameAt : public testing::TestWithParam<double> {};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the sweep proves must be so: every target is held against its own sight line, place by place.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <random>
 #include <set>
+
+#include <gtest/gtest.h>
 
 #include "sight/viewshed.h"
 
@@ -23,7 +23,8 @@ Ground rough_ground(int rows, int cols, float sigma, bool holes) {
   Ground ground{Grid<float>(rows, cols), {}};
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < cols; ++c) {
-      const float before = c > 0 ? ground.heights.at(r, c - 1) : 100, above = r > 0 ? ground.heights.at(r - 1, c) : 100;
+      const float before = c > 0 ? ground.heights.at(r, c - 1) : 100,
+                  above = r > 0 ? ground.heights.at(r - 1, c) : 100;
       ground.heights.at(r, c) = (before + above) / 2 + step(random);
     }
   }
@@ -61,7 +62,8 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
   const Scene scene(ground.heights, ground.error, {}, workers);
   const int base_col = static_cast<int>(test.col), base_row = static_cast<int>(test.row);
   const Georeference plane{Geotransform({0, 10, 0, 0, 0, -10})};
-  const ObserverFrame frame(plane, test.col - base_col, test.row - base_row, {-base_col, -base_row, kCols, kRows});
+  const ObserverFrame frame(plane, test.col - base_col, test.row - base_row,
+                            {-base_col, -base_row, kCols, kRows});
   Eye eye;
   eye.frame = &frame;
   eye.base_col = base_col;
@@ -76,10 +78,12 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
     fan.march(block, [&](const FanColumn& column, const WedgeFan::OpenPartsOf& parts_of) {
       for (int i = 0; i < column.count; ++i) {
         const int minor = column.first_minor + i;
-        const int row = column.transposed ? column.major : minor, col = column.transposed ? minor : column.major;
+        const int row = column.transposed ? column.major : minor,
+                  col = column.transposed ? minor : column.major;
         EXPECT_TRUE(visited.emplace(row, col).second) << row << " " << col;
         if (std::isnan(ground.heights.at(row, col))) continue;
-        const SightLine line(scene, eye, {double(col - base_col), double(row - base_row), tops.at(row, col), 0});
+        const SightLine line(scene, eye,
+                             {double(col - base_col), double(row - base_row), tops.at(row, col), 0});
         const double truth = by_every_place(scene, line);
         if (column.state[i] == kSurelyHidden) {
           ++hidden;
@@ -104,8 +108,9 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, Bracket,
-                         testing::Values(Case{0.5f, 40, 30, false}, Case{0.05f, 40.3, 30.7, false}, Case{0.5f, 0, 0, false},
-                                         Case{0.5f, 89, 69, false}, Case{0.2f, 17.5, 68.9, true}, Case{2.0f, 40, 30, true}));
+                         testing::Values(Case{0.5f, 40, 30, false}, Case{0.05f, 40.3, 30.7, false},
+                                         Case{0.5f, 0, 0, false}, Case{0.5f, 89, 69, false},
+                                         Case{0.2f, 17.5, 68.9, true}, Case{2.0f, 40, 30, true}));
 
 }  // namespace
 }  // namespace sightbound

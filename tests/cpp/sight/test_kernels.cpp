@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plain loops are the specification of the kernels: here they are compiled once more without vectors, and both must give
-// the same bits.
-#include <gtest/gtest.h>
-
+// The plain loops are the specification of the kernels: here they are compiled once more without vectors, and
+// both must give the same bits.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -10,6 +8,8 @@
 #include <limits>
 #include <random>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "error_model/error_model.h"
 #include "sight/search_kernel.h"
@@ -94,7 +94,8 @@ TEST(Kernels, give_the_same_bits_with_and_without_vectors) {
       expect_same_bits(cells, plain_cells);
 
       const WedgeStep step = some_step(random, wedges, rows);
-      std::vector<float> horizon = random.values(static_cast<std::size_t>(wedges), -1, 1), plain_horizon = horizon;
+      std::vector<float> horizon = random.values(static_cast<std::size_t>(wedges), -1, 1),
+                         plain_horizon = horizon;
       raise_above(step, cells.data(), horizon.data());
       plain::sightbound::raise_above(step, cells.data(), plain_horizon.data());
       expect_same_bits(horizon, plain_horizon);
@@ -123,7 +124,8 @@ TEST(Kernels, give_the_same_bits_with_and_without_vectors) {
 TEST(Kernels, scan_nodes_alike_with_and_without_vectors) {
   Random random;
   constexpr int kNodes = 64;
-  const std::vector<float> highest = random.values(kNodes * kNodes, 0, 100), widest = random.values(kNodes * kNodes, 0, 3);
+  const std::vector<float> highest = random.values(kNodes * kNodes, 0, 100),
+                           widest = random.values(kNodes * kNodes, 0, 3);
   int searched = 0;
   for (int round = 0; round < 200; ++round) {
     NodeScan scan;
@@ -155,7 +157,7 @@ TEST(Kernels, scan_nodes_alike_with_and_without_vectors) {
     expect_same_bits(matters, plain_matters);
     for (const std::int32_t m : matters) searched += m;
   }
-  EXPECT_GT(searched, 100);         // the case is not an empty one
+  EXPECT_GT(searched, 100);  // the case is not an empty one
   EXPECT_LT(searched, 200 * kScan - 100);
 }
 

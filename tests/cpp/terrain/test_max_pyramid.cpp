@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "terrain/max_pyramid.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include <gtest/gtest.h>
+
+#include "terrain/max_pyramid.h"
 
 namespace sightbound {
 namespace {
@@ -14,12 +14,14 @@ Grid<float> noise(int rows, int cols, double holes) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> height(0, 100), chance(0, 1);
   Grid<float> grid(rows, cols);
-  for (float& z : grid.values()) z = chance(random) < holes ? std::numeric_limits<float>::quiet_NaN() : height(random);
+  for (float& z : grid.values())
+    z = chance(random) < holes ? std::numeric_limits<float>::quiet_NaN() : height(random);
   return grid;
 }
 
 MaxPyramid pyramid_of(const Grid<float>& grid) {
-  return MaxPyramid(grid.rows(), grid.cols(), [&](int r, float*) { return grid.row(r); }, Workers(2));
+  return MaxPyramid(
+      grid.rows(), grid.cols(), [&](int r, float*) { return grid.row(r); }, Workers(2));
 }
 
 class MaxPyramidOf : public testing::TestWithParam<std::array<int, 2>> {};
@@ -50,8 +52,8 @@ TEST_P(MaxPyramidOf, holds_the_largest_sample_on_and_in_every_node) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, MaxPyramidOf,
-                         testing::Values(std::array{2, 2}, std::array{5, 5}, std::array{6, 33}, std::array{64, 65},
-                                         std::array{101, 37}));
+                         testing::Values(std::array{2, 2}, std::array{5, 5}, std::array{6, 33},
+                                         std::array{64, 65}, std::array{101, 37}));
 
 TEST(MaxPyramid, keeps_no_holes_where_there_are_none) {
   EXPECT_FALSE(pyramid_of(noise(20, 20, 0)).any_hole());
