@@ -21,9 +21,10 @@ run_suite() { # run_suite <name> <command>...
   if "$@"; then outcome[$name]="passed"; else outcome[$name]="FAILED"; fi
 }
 
+jobs=${SIGHTBOUND_JOBS:-$(nproc)}
 trap - ERR # a failing suite is reported in the summary
-run_suite "C++" ctest --test-dir build --output-on-failure --parallel "${SIGHTBOUND_JOBS:-$(nproc)}"
-run_suite "Python" /usr/bin/python3 -m pytest -q -p no:cacheprovider tests --ignore=tests/qgis
+run_suite "C++" ctest --test-dir build --output-on-failure --parallel "$jobs"
+run_suite "Python" /usr/bin/python3 -m pytest -q -p no:cacheprovider -n "$jobs" tests --ignore=tests/qgis
 run_suite "QGIS" /usr/bin/python3 -m pytest -q -p no:cacheprovider tests/qgis
 
 step "summary"
