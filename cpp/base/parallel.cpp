@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel.h"
 
+#include <algorithm>
+#include <string>
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <string>
 
 #include "base/error.h"
 
@@ -35,7 +35,9 @@ struct Workers::Arena {
 };
 
 Workers::Workers(int threads)
-    : count_(thread_count(threads)), count_outside_(innermost_count), arena_(std::make_unique<Arena>(count_)) {
+    : count_(thread_count(threads)),
+      count_outside_(innermost_count),
+      arena_(std::make_unique<Arena>(count_)) {
   innermost_count = count_;
 }
 

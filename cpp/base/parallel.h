@@ -20,8 +20,8 @@ class Workers {
 
   int count() const { return count_; }
 
-  // How many threads the job that runs on this thread may use: those of the Workers made last on it and still alive, or
-  // all cores. For work below that starts threads of its own (reading a file).
+  // How many threads the job that runs on this thread may use: those of the Workers made last on it and still
+  // alive, or all cores. For work below that starts threads of its own (reading a file).
   static int count_here();
 
   // Calls f(i) for i in [0, n), each once, in any order and on any of the threads; returns when all are done.
