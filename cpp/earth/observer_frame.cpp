@@ -205,6 +205,7 @@ void ObserverFrame::fit(const Georeference& georeference, const Window& reach) {
     const double error = std::max(cells / kFrameTolerance, bulge / kLargestBulgeError_m);
     if (error < best) {
       best = error;
+      error_cells_ = cells;
     } else {
       *this = before;
     }
@@ -371,6 +372,7 @@ void ObserverFrame::choose_terms(const Window& reach) {
   }
   if (!(best <= kFrameTolerance)) throw InvalidInput(too_large("lines of sight bend too much on its grid"));
   set_terms(best_terms);
+  error_cells_ = std::max(error_cells_, best);
 }
 
 double ObserverFrame::interpolation_error(const Window& reach) const {

@@ -99,6 +99,8 @@ class ObserverFrame {
   double row() const { return row_; }
   FramePlace at(double col, double row) const;
   bool is_straight() const { return terms_ == 0; }
+  // Largest error of places and paths at the places checked, cells.
+  double error_cells() const { return error_cells_; }
 
   // The geodesic to a place; `transposed`: rows are the major coordinate. The major span must not be 0.
   GeodesicPath path_to(double col, double row, bool transposed) const;
@@ -125,6 +127,7 @@ class ObserverFrame {
   int degree_ = 1;
   std::vector<double> east_, north_, bulge_;  // coefficient of x^i y^j at i (degree + 1) + j
   int terms_ = 0;
+  double error_cells_ = 0;
   std::array<double, kMaxPathTerms> nodes_{};
   std::array<std::array<double, kMaxPathTerms>, kMaxPathTerms> inverse_{};  // node values -> coefficients
 };

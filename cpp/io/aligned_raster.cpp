@@ -27,16 +27,6 @@ namespace {
 constexpr const char* kWhat = "The error raster";
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-bool same_crs(const std::string& a, const std::string& b) {
-  if (a == b) return true;
-  const gdal::ErrorLog log;
-  OGRSpatialReference first, second;
-  if (first.SetFromUserInput(a.c_str()) != OGRERR_NONE || second.SetFromUserInput(b.c_str()) != OGRERR_NONE)
-    return false;
-  const char* const options[] = {"CRITERION=EQUIVALENT", "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
-  return first.IsSame(&second, options) != 0;
-}
-
 // How the DEM's grid lies in a file on the same grid: file column = col + shift.
 struct Shift {
   int col = 0, row = 0;

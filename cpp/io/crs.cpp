@@ -274,6 +274,16 @@ Georeference georeference_of(const DemSource& dem) {
   return georeference;
 }
 
+bool same_crs(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  const gdal::ErrorLog log;
+  OGRSpatialReference first, second;
+  if (first.SetFromUserInput(a.c_str()) != OGRERR_NONE || second.SetFromUserInput(b.c_str()) != OGRERR_NONE)
+    return false;
+  const char* const options[] = {"CRITERION=EQUIVALENT", "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
+  return first.IsSame(&second, options) != 0;
+}
+
 CrsUnits crs_units(const std::string& crs) {
   CrsUnits units;
   if (crs.empty()) return units;

@@ -33,4 +33,7 @@ CrsUnits crs_units(const std::string& crs_wkt);
 // The horizontal part of a CRS as WKT2:2019; empty for an empty one.
 std::string horizontal_crs(const std::string& crs_wkt);
 
+// Do both say the same places, whatever the wording? False when one cannot be understood.
+bool same_crs(const std::string& a, const std::string& b);
+
 }  // namespace sightbound

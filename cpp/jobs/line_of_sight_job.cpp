@@ -145,7 +145,7 @@ std::vector<LineOfSight> run_lines_of_sight(const DemSource& source, const std::
   const MemoryBudget budget(options.memory_budget);
   const Workers workers(options.threads);
   const Georeference georeference = georeference_of(source);
-  std::vector<std::string> warnings = source.notes();
+  std::vector<std::string> warnings;
 
   std::vector<Pair> pairs;
   Window all;
@@ -181,6 +181,8 @@ std::vector<LineOfSight> run_lines_of_sight(const DemSource& source, const std::
     lines.push_back(judge(source, observers[i], pairs[i], *terrain, options));
     progress.advance(1);
   }
+  const std::vector<std::string> notes = source.notes();  // reading adds to them
+  warnings.insert(warnings.begin(), notes.begin(), notes.end());
   for (LineOfSight& line : lines) {
     line.error_model = completed.describe();
     line.warnings = warnings;

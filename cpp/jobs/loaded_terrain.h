@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "earth/georeference.h"
+#include "jobs/ground_raster.h"
 #include "jobs/resolve_error.h"
 #include "jobs/viewshed_job.h"
 #include "sight/scene.h"
@@ -39,7 +40,7 @@ class LoadedTerrain {
   std::vector<double> cell_areas_;
 };
 
-// Interpolated on the terrain at (col, row) of the grid; NaN when a sample that counts is nodata.
-double interpolate(const Grid<float>& samples, double col, double row);
+// Area of a cell in each row, square metres.
+std::vector<double> cell_areas(const std::vector<CellSize>&, const Geotransform&);
 
 }  // namespace sightbound

@@ -36,7 +36,8 @@ Window from_base(const Window& w, const GridPlace& place) {
 }  // namespace
 
 std::string name_of(const Observer& observer, std::size_t index) {
-  return observer.name.empty() ? "Observer " + std::to_string(index + 1) : "Observer '" + observer.name + "'";
+  if (!observer.name.empty()) return "Observer '" + observer.name + "'";
+  return "Observer " + std::to_string(observer.number != 0 ? observer.number : index + 1);
 }
 
 void validate(const Observer& o, const std::string& name) {
@@ -106,7 +107,10 @@ Window reach_of(const DemSource& source, const Georeference& georeference, const
   const auto smallest = [&](const Window& rows, bool along_row) {
     double least = 1e300;
     for (const int row : {rows.row, rows.row + rows.rows / 2, rows.row_end() - 1}) {
-      const CellSize size = ground_cell_sizes(georeference, {0, row, all.cols, 1})[0];
+      // With its neighbours: a row on a pole has no size of its own.
+      const Window around = intersection({0, row - 1, all.cols, 3}, all);
+      const CellSize size =
+          ground_cell_sizes(georeference, around)[static_cast<std::size_t>(row - around.row)];
       least = std::min(least, along_row ? size.col_m : size.row_m);
     }
     return least;
@@ -123,20 +127,24 @@ Window reach_of(const DemSource& source, const Georeference& georeference, const
 Window samples_within(const ObserverFrame& frame, const GridPlace& place, const Window& reach,
                       double distance_m) {
   Window w = reach;
-  const auto near = [&](int col, int row) {
-    return frame.at(col - place.base_col, row - place.base_row).distance() <= distance_m;
+  // Along a row (column) the distance falls to one least value and rises again: found by narrowing in on it.
+  const auto least = [](int first, int last, const auto& distance) {
+    while (last - first > 2) {
+      const int a = first + (last - first) / 3, b = last - (last - first) / 3;
+      (distance(a) < distance(b) ? last : first) = distance(a) < distance(b) ? b : a;
+    }
+    double nearest = distance(first);
+    for (int i = first + 1; i <= last; ++i) nearest = std::min(nearest, distance(i));
+    return nearest;
+  };
+  const auto distance = [&](int col, int row) {
+    return frame.at(col - place.base_col, row - place.base_row).distance();
   };
   const auto row_is_near = [&](int row) {
-    for (int col = w.col; col < w.col_end(); ++col) {
-      if (near(col, row)) return true;
-    }
-    return false;
+    return least(w.col, w.col_end() - 1, [&](int col) { return distance(col, row); }) <= distance_m;
   };
   const auto col_is_near = [&](int col) {
-    for (int row = w.row; row < w.row_end(); ++row) {
-      if (near(col, row)) return true;
-    }
-    return false;
+    return least(w.row, w.row_end() - 1, [&](int row) { return distance(col, row); }) <= distance_m;
   };
   while (w.rows > 1 && !row_is_near(w.row)) ++w.row, --w.rows;
   while (w.rows > 1 && !row_is_near(w.row_end() - 1)) --w.rows;

@@ -166,7 +166,7 @@ class Run {
     if (below > 0) {
       out.status = "eye below the terrain";
       report_.warnings.push_back(post.name + ": the eye is " + std::to_string(below) +
-                                 " m below the terrain; it sees nothing.");
+                                 " m below the terrain.");
     }
 
     View view{terrain.scene(), {}, {}, terrain.ground(), terrain.cell_areas(), {}};
@@ -211,7 +211,7 @@ class Run {
 
 // Areas of the combined verdict. One observer's are those already counted.
 void total_areas(const DemSource& source, const Georeference& georeference, const Window& window,
-                 const Canvas& canvas, ViewshedReport& report) {
+                 const Canvas& canvas, ViewshedReport& report, const Workers& workers, Progress& progress) {
   if (report.observers.size() == 1) {
     const ObserverReport& only = report.observers.front();
     report.visible_m2 = only.visible_m2;
@@ -219,17 +219,28 @@ void total_areas(const DemSource& source, const Georeference& georeference, cons
     report.hidden_m2 = only.hidden_m2;
     return;
   }
-  const std::vector<CellSize> sizes =
-      ground_cell_sizes(georeference, {0, window.row, source.cols(), window.rows});
-  for (int r = 0; r < window.rows; ++r) {
-    std::array<std::uint64_t, 256> cells{};
-    for (int c = 0; c < window.cols; ++c) ++cells[canvas.verdict.at(r, c)];
-    const CellSize& size = sizes[static_cast<std::size_t>(r)];
-    const double area = size.col_m * size.row_m;
-    report.visible_m2 += area * static_cast<double>(cells[kVisible]);
-    report.uncertain_m2 += area * static_cast<double>(cells[kUncertain]);
-    report.hidden_m2 += area * static_cast<double>(cells[kHidden]);
+  const std::vector<double> areas = cell_areas(
+      ground_cell_sizes(georeference, {0, window.row, source.cols(), window.rows}), source.geotransform());
+  std::vector<std::array<std::uint32_t, 256>> cells(areas.size());
+  workers.for_each(areas.size(), [&](std::size_t r) {
+    progress.check();
+    const std::uint8_t* row = canvas.verdict.row(static_cast<int>(r));
+    for (int c = 0; c < window.cols; ++c) ++cells[r][row[c]];
+  });
+  for (std::size_t r = 0; r < areas.size(); ++r) {
+    report.visible_m2 += areas[r] * cells[r][kVisible];
+    report.uncertain_m2 += areas[r] * cells[r][kUncertain];
+    report.hidden_m2 += areas[r] * cells[r][kHidden];
   }
+}
+
+// What the sources had to say of their data, once it is read; first, since all else rests on it.
+void add_notes(const DemSource& source, const ViewshedOptions& options, std::vector<std::string>& warnings) {
+  std::vector<std::string> notes = source.notes();
+  if (options.ground) {
+    for (const std::string& note : options.ground->notes()) notes.push_back("ground: " + note);
+  }
+  warnings.insert(warnings.begin(), notes.begin(), notes.end());
 }
 
 }  // namespace
@@ -243,7 +254,6 @@ ViewshedResult run_viewshed(const DemSource& source, const std::vector<Observer>
   const Workers workers(options.threads);
   ViewshedResult result;
   ViewshedReport& report = result.report;
-  report.warnings = source.notes();
 
   const Georeference georeference = georeference_of(source);
   const std::vector<Post> posts = place_observers(source, georeference, observers, options.extent, progress);
@@ -254,17 +264,18 @@ ViewshedResult run_viewshed(const DemSource& source, const std::vector<Observer>
   const ErrorModel completed = complete_model(model, source, report.warnings, progress);
   report.error_model = completed.describe();
 
-  Canvas canvas(plan.canvas, options.combine == Combine::kBest, options.heights, workers);
-  if (observers.size() > 1) canvas.start_counting();
+  Canvas canvas(plan.canvas, options.combine == Combine::kBest, options.heights, workers, progress);
+  if (observers.size() > 1) canvas.start_counting(workers, progress);
   Run run(source, georeference, completed, options, workers, canvas, plan.canvas, report, progress);
   if (plan.together) {
     run.together(posts, plan.terrain, 0.88);
   } else {
     run.one_by_one(posts, 0.88);
   }
-  total_areas(source, georeference, plan.canvas, canvas, report);
+  total_areas(source, georeference, plan.canvas, canvas, report, workers, progress);
+  add_notes(source, options, report.warnings);
 
-  canvas.seal_heights();
+  canvas.seal_heights(workers, progress);
   if (source.flipped()) canvas.flip_rows();
   result.confidence = std::move(canvas.confidence);
   result.verdict = std::move(canvas.verdict);

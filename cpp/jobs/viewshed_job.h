@@ -35,6 +35,7 @@ struct Observer {
   double azimuth_from = 0, azimuth_to = 360;  // degrees clockwise from true north
   double angle_from = -90, angle_to = 90;     // degrees above the observer's horizontal
   std::string name;                           // for messages; empty = its number
+  std::size_t number = 0;                     // counted from 1; 0 = its place in the list
 };
 
 struct ViewshedOptions {
@@ -62,8 +63,8 @@ struct ObserverReport {
 struct ViewshedReport {
   std::vector<ObserverReport> observers;
   double visible_m2 = 0, uncertain_m2 = 0, hidden_m2 = 0;  // of the combined verdict
-  double hole_doubt_m2 = 0;         // area in doubt only because sight would cross a hole
-  std::size_t memory_bytes = 0;     // planned peak
+  double hole_doubt_m2 = 0;      // in doubt only because sight would cross a hole, summed over the observers
+  std::size_t memory_bytes = 0;  // planned peak
   std::uint64_t cells_settled = 0;  // cells that needed an exact line, over all observers
   std::string error_model;          // JSON of what was used
   std::vector<std::string> warnings;

@@ -29,7 +29,7 @@ double least_sampling(const SampleField& sampling) {
 }  // namespace
 
 Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const SceneOptions& options,
-             const Workers& workers)
+             const Workers& workers, Progress& progress)
     : heights(heights_in),
       error(error_in),
       quantile(two_sided_quantile(options.confidence)),
@@ -41,7 +41,8 @@ Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const Sc
       uniform(error_in.sampling.is_constant() && error_in.amplitude.is_constant() &&
               error_in.amplitude.constant() == 0),
       highest(
-          heights_in.rows(), heights_in.cols(), [&](int r, float*) { return heights_in.row(r); }, workers),
+          heights_in.rows(), heights_in.cols(), [&](int r, float*) { return heights_in.row(r); }, workers,
+          progress),
       least_sigma(std::max(least_sampling(error_in.sampling), kLeastSigma)),
       largest_profile_(most_growth(error_in)) {
   if (uniform) return;
@@ -54,7 +55,7 @@ Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const Sc
         }
         return buffer;
       },
-      workers);
+      workers, progress);
 }
 
 }  // namespace sightbound

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "error_model/error_field.h"
 #include "terrain/grid.h"
 #include "terrain/max_pyramid.h"
@@ -25,7 +26,8 @@ struct SceneOptions {
 
 struct Scene {
   // `heights` and `error` are kept by reference.
-  Scene(const Grid<float>& heights, const ErrorField& error, const SceneOptions&, const Workers&);
+  Scene(const Grid<float>& heights, const ErrorField& error, const SceneOptions&, const Workers&,
+        Progress&);  // only checks the progress
 
   const Grid<float>& heights;
   const ErrorField& error;

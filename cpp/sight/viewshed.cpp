@@ -69,9 +69,9 @@ class Painter {
               end = column.transposed ? window.col_end() : window.row_end();
     const int major_first = column.transposed ? window.row : window.col;
     const int major_end = column.transposed ? window.row_end() : window.col_end();
-    if (column.major < major_first || column.major >= major_end) return;
-    const int from = std::max(first - column.first_minor, 0),
-              to = std::min(end - column.first_minor, column.count);
+    const bool off = column.major < major_first || column.major >= major_end;
+    const int from = std::max(first - column.first_minor, 0);
+    const int to = off ? from : std::min(end - column.first_minor, column.count);
 
     double hint = -1;
     for (int i = from; i < to; ++i) {
@@ -87,7 +87,7 @@ class Painter {
         i += run - 1;
         continue;
       }
-      if (std::isnan(scene_.heights.at(row, col)) || (by_place && !asked(row, col))) continue;
+      if (!has_target(row, col) || (by_place && !asked(row, col))) continue;
       if (hidden && !canvas_.has_heights()) {
         put(row, col, -scene_.largest_ratio);
         continue;
@@ -104,7 +104,8 @@ class Painter {
   // The sample the observer stands on exactly: nothing lies between.
   void paint_own_sample() {
     const int row = view_.eye.base_row, col = view_.eye.base_col;
-    if (!canvas_.holds(row, col) || !asked(row, col)) return;
+    // It has no direction that limits could exclude.
+    if (!canvas_.holds(row, col) || !has_target(row, col) || view_.limits.min_distance > 0) return;
     put(row, col, scene_.largest_ratio);
     if (canvas_.has_heights()) canvas_.put_heights(row, col, 0, 0);
   }
@@ -122,6 +123,11 @@ class Painter {
             scene_.ends_move ? static_cast<double>(scene_.error.sampling.at(row, col)) : 0.0};
   }
 
+  // Is there terrain at the cell, and something for the target to stand on?
+  bool has_target(int row, int col) const {
+    return !std::isnan(scene_.heights.at(row, col)) && !std::isnan(view_.tops.at(row, col));
+  }
+
   bool asked(int row, int col) const {
     const ViewLimits& limits = view_.limits;
     const int from_col = col - view_.eye.base_col, from_row = row - view_.eye.base_row;
@@ -137,7 +143,6 @@ class Painter {
 
   void settle(OpenParts open, bool hidden, int row, int col, double& hint) {
     const double base_ground = static_cast<double>(view_.ground.at(row, col));
-    if (std::isnan(base_ground)) return;  // no ground to stand on
     const SightLine line(scene_, view_.eye, target(row, col));
     Critical critical{-scene_.largest_ratio, -1, false};
     if (!hidden) {
@@ -149,7 +154,7 @@ class Painter {
       totals_.hole_doubt_m2 += area(row);
     }
     if (!hidden) ++totals_.settled;
-    if (canvas_.has_heights()) {
+    if (canvas_.has_heights() && !std::isnan(base_ground)) {
       const double likely = line.needed_height(0, base_ground, likely_hint_);
       const double certain = line.needed_height(scene_.quantile, base_ground, certain_hint_);
       const auto above = [&](double z) { return static_cast<float>(z - base_ground); };
@@ -188,13 +193,14 @@ bool ViewLimits::admits_azimuth(double azimuth_deg) const {
   return beyond <= span;
 }
 
-Canvas::Canvas(const Window& window, bool best, bool heights, const Workers& workers)
+Canvas::Canvas(const Window& window, bool best, bool heights, const Workers& workers, Progress& progress)
     : confidence(window.rows, window.cols), verdict(window.rows, window.cols), window_(window), best_(best) {
   if (heights) {
     certain_height = Grid<float>(window.rows, window.cols);
     likely_height = Grid<float>(window.rows, window.cols);
   }
   workers.for_each(static_cast<std::size_t>(window.rows), [&](std::size_t r) {
+    progress.check();
     const int row = static_cast<int>(r);
     std::fill_n(verdict.row(row), window.cols, kNoVerdict);
     for (Grid<float>* grid : {&confidence, &certain_height, &likely_height}) {
@@ -209,7 +215,13 @@ void Canvas::flip_rows() {
   count.flip_rows();
 }
 
-void Canvas::start_counting() { count = Grid<std::uint32_t>(window_.rows, window_.cols, kNoCount); }
+void Canvas::start_counting(const Workers& workers, Progress& progress) {
+  count = Grid<std::uint32_t>(window_.rows, window_.cols);
+  workers.for_each(static_cast<std::size_t>(window_.rows), [&](std::size_t r) {
+    progress.check();
+    std::fill_n(count.row(static_cast<int>(r)), window_.cols, kNoCount);
+  });
+}
 
 void Canvas::put_heights(int row, int col, float certain, float likely) {
   const int r = row - window_.row, c = col - window_.col;
@@ -220,9 +232,13 @@ void Canvas::put_heights(int row, int col, float certain, float likely) {
   combine(likely_height.at(r, c), likely);
 }
 
-void Canvas::seal_heights() {
+void Canvas::seal_heights(const Workers& workers, Progress& progress) {
   for (Grid<float>* heights : {&certain_height, &likely_height}) {
-    for (float& h : heights->values()) h = std::isinf(h) ? kNan : h;
+    workers.for_each(static_cast<std::size_t>(heights->rows()), [&](std::size_t r) {
+      progress.check();
+      float* row = heights->row(static_cast<int>(r));
+      for (int c = 0; c < heights->cols(); ++c) row[c] = std::isinf(row[c]) ? kNan : row[c];
+    });
   }
 }
 

@@ -31,7 +31,7 @@ struct ViewLimits {
 class Canvas {
  public:
   // `window` is in the scene's grid.
-  Canvas(const Window& window, bool best, bool heights, const Workers&);
+  Canvas(const Window& window, bool best, bool heights, const Workers&, Progress&);  // only checks it
 
   const Window& window() const { return window_; }
   bool has_heights() const { return !certain_height.empty(); }
@@ -48,9 +48,9 @@ class Canvas {
   void hide(int row, int col, int run, bool along_row);
   void put_heights(int row, int col, float certain, float likely);
   // Counts the observers that claim visible; before it is called only the verdict knows of a single one.
-  void start_counting();
+  void start_counting(const Workers&, Progress&);
   // Cells at which no height is sure become NaN; nothing may be put afterwards.
-  void seal_heights();
+  void seal_heights(const Workers&, Progress&);
   void flip_rows();
 
   Grid<float> confidence;  // NaN = nobody asked

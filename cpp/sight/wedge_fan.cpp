@@ -64,6 +64,7 @@ class WedgeFan::March {
     below_.assign(static_cast<std::size_t>(wedges_), -kUnbounded);
     // Parts of equal length, a power of two, so many that a search can be confined to few columns.
     while (part_length_ * kMostParts < block.reach) part_length_ *= 2;
+    frame_pad_ = 2 * eye_.frame->error_cells();
     bound_curvature();
   }
 
@@ -153,9 +154,12 @@ class WedgeFan::March {
     return {static_cast<float>(p.minor.a - first), static_cast<float>((p.minor.b - p.minor.a) / wedges_)};
   }
 
-  static float largest_inverse(const ColumnPlace& p) { return static_cast<float>((1 + 1e-6) / p.tau.low()); }
-  static float smallest_inverse(const ColumnPlace& p) {
-    return static_cast<float>((1 - 1e-6) / p.tau.high());
+  // A frame may be wrong by `frame_pad_` cells.
+  float largest_inverse(const ColumnPlace& p) const {
+    return static_cast<float>((1 + 1e-6 + frame_pad_ / std::max(p.step, kFirstBelow)) / p.tau.low());
+  }
+  float smallest_inverse(const ColumnPlace& p) const {
+    return static_cast<float>((1 - 1e-6 - frame_pad_ / std::max(p.step, kFirstBelow)) / p.tau.high());
   }
 
   void load(const ColumnPlace& near, const ColumnPlace& here, const ColumnPlace& next, Column& column) {
@@ -233,6 +237,8 @@ class WedgeFan::March {
           height_pad_ + (scene_.ends_move ? static_cast<float>(scene_.largest_ratio) * sampling_[at] : 0);
       column.top_above[at] = z_[at] + height - slack;
       column.top_below[at] = z_[at] + height + slack;
+      // Where there is no terrain there is no target either, whatever the tops stand on.
+      if (column.below[at] <= -kUnbounded) column.top_below[at] = std::numeric_limits<float>::quiet_NaN();
     }
   }
 
@@ -256,7 +262,7 @@ class WedgeFan::March {
     step.rows = high - low;
     step.wedges = wedges_;
     step.edges = edges(here, column.first);
-    step.pad = static_cast<float>(here.minor.bend()) + kPositionPad;
+    step.pad = static_cast<float>(here.minor.bend() + frame_pad_) + kPositionPad;
     step.drop_low = drop(here, false);
     step.drop_high = drop(here, true);
     step.eye_above = eye_above_;
@@ -330,7 +336,7 @@ class WedgeFan::March {
     WedgeStep step;
     step.wedges = wedges_;
     step.far = edges(here, column.first);
-    step.pad = static_cast<float>(here.minor.bend()) + kPositionPad;
+    step.pad = static_cast<float>(here.minor.bend() + frame_pad_) + kPositionPad;
     step.rows = column.rows;
     step.drop_high = drop(here, true);
     step.eye_below = eye_below_;
@@ -369,7 +375,7 @@ class WedgeFan::March {
     step.wedges = wedges_;
     step.near = edges(near, first);
     step.far = edges(here, first);
-    step.pad = static_cast<float>(std::max(near.minor.bend(), here.minor.bend())) + kPositionPad;
+    step.pad = static_cast<float>(std::max(near.minor.bend(), here.minor.bend()) + frame_pad_) + kPositionPad;
     step.rows = end - first;
     step.drop_low = drop(near, false);
     step.eye_above = eye_above_;
@@ -393,6 +399,7 @@ class WedgeFan::March {
   int base_major_, base_minor_, majors_, minors_;
   double major0_, minor0_;
   float eye_above_, eye_below_, height_pad_;
+  double frame_pad_ = 0;  // cells
   double curvature_low_ = 0, curvature_high_ = 0;
   int wedges_;
   int part_length_ = kLeastPart;

@@ -56,7 +56,8 @@ Grid<T> halved(const Grid<T>& fine) {
 
 }  // namespace
 
-MaxPyramid::MaxPyramid(int sample_rows, int sample_cols, const RowSource& source, const Workers& workers) {
+MaxPyramid::MaxPyramid(int sample_rows, int sample_cols, const RowSource& source, const Workers& workers,
+                       Progress& progress) {
   constexpr int kSide = 1 << kFinest;
   const int rows = std::max(1, (sample_rows - 1 + kSide - 1) / kSide);
   const int cols = std::max(1, (sample_cols - 1 + kSide - 1) / kSide);
@@ -64,6 +65,7 @@ MaxPyramid::MaxPyramid(int sample_rows, int sample_cols, const RowSource& source
   holes_.emplace_back(rows, cols);
   std::atomic<bool> any_hole{false};
   workers.for_each(static_cast<std::size_t>(rows), [&](std::size_t r) {
+    progress.check();
     if (finest_row(sample_rows, sample_cols, source, static_cast<int>(r), max_[0], holes_[0]))
       any_hole = true;
   });

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "terrain/grid.h"
 
 namespace sightbound {
@@ -26,7 +27,7 @@ class MaxPyramid {
   using RowSource = std::function<const float*(int r, float* buffer)>;
 
   // NaN samples count for nothing in `max` and are told by `has_hole`.
-  MaxPyramid(int rows, int cols, const RowSource&, const Workers&);
+  MaxPyramid(int rows, int cols, const RowSource&, const Workers&, Progress&);  // only checks the progress
 
   int coarsest() const { return kFinest + static_cast<int>(max_.size()) - 1; }
   // Lowest float where a node holds no sample but NaN.

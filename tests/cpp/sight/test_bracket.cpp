@@ -59,7 +59,8 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
   constexpr int kRows = 70, kCols = 90;
   const Ground ground = rough_ground(kRows, kCols, test.sigma, test.holes);
   const Workers workers(2);
-  const Scene scene(ground.heights, ground.error, {}, workers);
+  Progress progress;
+  const Scene scene(ground.heights, ground.error, {}, workers, progress);
   const int base_col = static_cast<int>(test.col), base_row = static_cast<int>(test.row);
   const Georeference plane{Geotransform({0, 10, 0, 0, 0, -10})};
   const ObserverFrame frame(plane, test.col - base_col, test.row - base_row,

@@ -20,8 +20,9 @@ Grid<float> noise(int rows, int cols, double holes) {
 }
 
 MaxPyramid pyramid_of(const Grid<float>& grid) {
+  Progress progress;
   return MaxPyramid(
-      grid.rows(), grid.cols(), [&](int r, float*) { return grid.row(r); }, Workers(2));
+      grid.rows(), grid.cols(), [&](int r, float*) { return grid.row(r); }, Workers(2), progress);
 }
 
 class MaxPyramidOf : public testing::TestWithParam<std::array<int, 2>> {};
