@@ -36,7 +36,8 @@ void bind_observer(py::module_& m) {
                              std::move(name)};
            }),
            py::arg("x"), py::arg("y"), py::arg("height"), py::arg("target_height"), py::arg("min_distance"),
-           py::arg("max_distance"), py::arg("azimuth"), py::arg("vertical_angle"), py::arg("name"));
+           py::arg("max_distance"), py::arg("azimuth"), py::arg("vertical_angle"), py::arg("name"))
+      .def_readwrite("number", &Observer::number);
 }
 
 void bind_extent(py::module_& m) {

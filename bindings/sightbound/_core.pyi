@@ -105,6 +105,7 @@ class Observer:
         vertical_angle: tuple[float, float],
         name: str,
     ) -> None: ...
+    number: int
 
 class Extent:
     def __init__(self, x_min: float, y_min: float, x_max: float, y_max: float) -> None: ...

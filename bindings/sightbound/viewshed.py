@@ -173,6 +173,7 @@ def _one_by_one(job: _Job, progress: Progress | None) -> Iterator[ViewshedResult
     steps = len(job.observers) + 1
     model, warnings = core.complete_model(job.dem, job.model, _part(progress, 0, steps))
     for step, observer in enumerate(job.observers, 1):
+        observer.number = step  # what messages call it, as in viewshed()
         result = core.viewshed(job.dem, [observer], model, job.options, _part(progress, step, steps))
         result.prepend_warnings(warnings)
         yield ViewshedResult(result, [observer], job.options)

@@ -43,6 +43,17 @@ def test_arguments_are_checked_at_once_results_made_late(dem):
         next(results)
 
 
+def test_messages_count_the_observers_as_in_one_call(dem):
+    eyes = [*EYES[:2], (-50.0, 5.0)]
+    results = sb.viewsheds(dem, eyes, max_distance=200, error_model=sb.ErrorModel(0.5, 0, 0))
+    next(results), next(results)
+    with pytest.raises(ValueError) as alone:
+        next(results)
+    with pytest.raises(ValueError) as together:
+        sb.viewshed(dem, eyes, max_distance=200)
+    assert str(alone.value) == str(together.value) and str(alone.value).startswith("Observer 3 at (-50, 5)")
+
+
 def test_progress_is_of_all(dem):
     seen = []
     list(sb.viewsheds(dem, EYES, max_distance=300, progress=lambda fraction: seen.append(fraction)))
