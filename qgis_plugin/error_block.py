@@ -16,6 +16,7 @@ from qgis.core import (
 )
 
 from .errors import bad_input, core_errors
+from .feedback import until_cancelled
 from .rasters import read_raster, same_ground
 from .text import tr
 from .values import given, number_or_none, word
@@ -123,7 +124,7 @@ def _read_geologic(choice, algorithm, parameters, context, feedback, dem):
     if rises is not None:
         choice.other["geologic_variation"] = rises.path
     if given(parameters, "TERRAIN_TYPES"):
-        choice.other["terrain_types"] = _polygons(algorithm, parameters, context, dem)
+        choice.other["terrain_types"] = _polygons(algorithm, parameters, context, feedback, dem)
         choice.other["terrain_field"] = algorithm.parameterAsFields(parameters, "TERRAIN_FIELD", context)[0]
         choice.other["terrain_table"] = _terrain_table(algorithm, parameters, context)
     reach = number_or_none(algorithm, parameters, "GEOLOGIC_RANGE", context)
@@ -134,7 +135,7 @@ def _read_geologic(choice, algorithm, parameters, context, feedback, dem):
         choice.other["geologic_model"] = model
 
 
-def _polygons(algorithm, parameters, context, dem):
+def _polygons(algorithm, parameters, context, feedback, dem):
     """The path of a file that holds the polygons: the layer's own, or a copy in the CRS of the DEM."""
     source = algorithm.parameterAsSource(parameters, "TERRAIN_TYPES", context)
     if source is None:
@@ -147,7 +148,7 @@ def _polygons(algorithm, parameters, context, dem):
         names = ", ".join(one.name() for one in source.fields())
         raise bad_input("TERRAIN_FIELD", tr("the layer has no field {!r}; it has {}.").format(name, names))
     layer = algorithm.parameterAsVectorLayer(parameters, "TERRAIN_TYPES", context)
-    path = _plain_file(layer, source) or _copy_polygons(source, index, dem.crs, context)
+    path = _plain_file(layer, source) or _copy_polygons(source, index, dem.crs, context, feedback)
     algorithm.paths[path] = "TERRAIN_TYPES"
     return path
 
@@ -166,7 +167,7 @@ def _plain_file(layer, source):
     return layer.source() if same_ground(dataset.GetLayer(0).GetSpatialRef(), layer.crs()) else ""
 
 
-def _copy_polygons(source, index, crs, context):
+def _copy_polygons(source, index, crs, context, feedback):
     fields = QgsFields()
     fields.append(source.fields().at(index))
     path = QgsProcessingUtils.generateTempFilename("terrain_types.gpkg")
@@ -176,7 +177,7 @@ def _copy_polygons(source, index, crs, context):
         path, fields, QgsWkbTypes.Type.MultiPolygon, crs, context.transformContext(), options
     )
     to_dem = QgsCoordinateTransform(source.sourceCrs(), crs, context.transformContext())
-    for feature in source.getFeatures():
+    for feature in until_cancelled(source.getFeatures(), feedback):
         geometry = feature.geometry()
         if geometry.isNull():
             continue

@@ -1,5 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joins the core's progress callback to a QgsProcessingFeedback."""
+"""Joins the core's progress callback, and loops of the plugin, to a QgsProcessingFeedback."""
+
+
+class Stopped(Exception):
+    """The user has cancelled."""
+
+
+def until_cancelled(items, feedback, every=100):
+    """The items one by one; raises Stopped once the user has cancelled, looked up `every` so many items."""
+    for number, item in enumerate(items):
+        if number % every == 0 and feedback.isCanceled():
+            raise Stopped
+        yield item
 
 
 class Progress:

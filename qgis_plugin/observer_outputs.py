@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the viewshed says of each observer: one raster each in a folder, and a table of areas."""
 
+import os
 import shutil
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from qgis.core import QgsFeature, QgsFeatureSink, QgsFields, QgsWkbTypes
 
@@ -15,30 +18,61 @@ from .text import tr
 
 # Columns of the table, under the names they have in the core's report of an observer.
 _COLUMNS = ("ground_height", "eye_height", "visible_m2", "uncertain_m2", "hidden_m2", "status")
+# What GDAL keeps beside a raster; of an older raster it says nothing true of the new one.
+_SIDE_FILES = (".aux.xml", ".ovr", ".msk")
 
 
-def write_observer_rasters(algorithm, sightbound, dem, job, arguments, parameters, context, feedback):
+@contextmanager
+def observer_rasters(folder, sightbound, dem, job, arguments, feedback):
     """Writes the confidence raster of each observer, cropped to its reach, with its style beside it.
 
-    If it fails or is cancelled the rasters of this run are removed again.
+    They are made in a hidden folder inside `folder` and appear in it when the block ends. If the block or the writing
+    fails or is cancelled none does, and what stood in `folder` stays.
     """
-    folder = Path(algorithm.parameterAsString(parameters, "OUTPUT_FOLDER", context))
-    spots = [(place.x, place.y) for place in job.places]
-    written = []
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    folder = Path(folder)
+    with ExitStack() as stack:
         with core_errors("OUTPUT_FOLDER"):
-            results = sightbound.viewsheds(dem, spots, progress=Progress(feedback, 50.0, 95.0), **arguments)
-            for name, result in zip(file_names(job.places), results):
-                path = folder / f"{name}.tif"
-                written += [path, path.with_suffix(".qml")]
-                result.write(confidence=str(path), creation_options=job.options)
-                shutil.copyfile(style_path("confidence"), path.with_suffix(".qml"))
-    except BaseException:
-        for path in written:
-            path.unlink(missing_ok=True)
+            folder.mkdir(parents=True, exist_ok=True)
+            hidden = Path(stack.enter_context(TemporaryDirectory(prefix=".sightbound-", dir=folder)))
+            new, old = hidden / "new", hidden / "old"
+            new.mkdir()
+            old.mkdir()
+            _write_rasters(new, sightbound, dem, job, arguments, feedback)
+        yield
+        with core_errors("OUTPUT_FOLDER"):
+            _replace_files(new, folder, old)
+
+
+def _write_rasters(folder, sightbound, dem, job, arguments, feedback):
+    spots = [(place.x, place.y) for place in job.places]
+    results = sightbound.viewsheds(dem, spots, progress=Progress(feedback, 50.0, 95.0), **arguments)
+    for name, result in zip(file_names(job.places), results):
+        path = folder / f"{name}.tif"
+        here = feedback.progress()
+        result.write(
+            confidence=str(path), creation_options=job.options, progress=Progress(feedback, here, here)
+        )
+        shutil.copyfile(style_path("confidence"), path.with_suffix(".qml"))
+
+
+def _replace_files(new, folder, old):
+    """Moves all files of `new` into `folder`, those they replace into `old`; if one cannot be moved, all go back."""
+    moved = []
+
+    def move(source, target):
+        os.replace(source, target)
+        moved.append((source, target))
+
+    try:
+        for path in sorted(new.iterdir()):
+            for name in [path.name] + [path.name + side for side in _SIDE_FILES]:
+                if (folder / name).is_file():
+                    move(folder / name, old / name)
+            move(path, folder / path.name)
+    except OSError:
+        for source, target in reversed(moved):
+            os.replace(target, source)
         raise
-    return str(folder)
 
 
 def write_observer_table(algorithm, job, report, parameters, context):

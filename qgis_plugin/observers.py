@@ -13,6 +13,7 @@ from qgis.core import (
 )
 
 from .errors import bad_input
+from .feedback import until_cancelled
 from .text import tr
 from .values import Varying, given, is_null
 
@@ -33,12 +34,14 @@ class Place:
     values: dict = field(default_factory=dict)  # parameter name -> number or None
 
 
-def read_observers(algorithm, parameters, context, dem):
+def read_observers(algorithm, parameters, context, feedback, dem):
     """The places of OBSERVERS or OBSERVER, and the source (None for a single OBSERVER)."""
     names = HEIGHTS + LIMITS
     if given(parameters, "OBSERVERS"):
         fields = {name: f"{name}_FIELD" for name in HEIGHTS}
-        return read_points(algorithm, parameters, "OBSERVERS", context, dem, names, fields, "ID_FIELD")
+        return read_points(
+            algorithm, parameters, "OBSERVERS", context, feedback, dem, names, fields, "ID_FIELD"
+        )
     expressions = algorithm.createExpressionContext(parameters, context)
     values = [Varying(algorithm, parameters, name, context, expressions) for name in names]
     point = algorithm.parameterAsPoint(parameters, "OBSERVER", context, dem.crs)
@@ -50,8 +53,8 @@ def read_observers(algorithm, parameters, context, dem):
     return [place], None
 
 
-def read_points(algorithm, parameters, name, context, dem, varying, fields, name_field):
-    """The points of the layer `name` in the CRS of the DEM.
+def read_points(algorithm, parameters, name, context, feedback, dem, varying, fields, name_field):
+    """The points of the layer `name` in the CRS of the DEM. Raises Stopped when cancelled.
 
     `varying` are the parameters to evaluate for each; `fields` names the field parameter that may stand in for one.
     """
@@ -73,11 +76,11 @@ def read_points(algorithm, parameters, name, context, dem, varying, fields, name
     naming = _field(algorithm, parameters, name_field, source, context)
     to_dem = _transform(source.sourceCrs(), dem.crs, context)
     places = []
-    for feature in source.getFeatures():
+    for feature in until_cancelled(source.getFeatures(), feedback):
         label = tr("feature {} of {}").format(feature.id(), name)
         title = feature.attribute(naming) if naming else feature.id()
         evaluated = {one.name: one.value(feature, label) for one in values}
-        for point in _points_of(feature, name, label):
+        for point in until_cancelled(_points_of(feature, name, label), feedback):
             x, y = _moved(point, to_dem, name, label)
             title = feature.id() if is_null(title) else title
             place = Place(label, str(title), x, y, feature, QgsGeometry.fromPointXY(point), dict(evaluated))

@@ -4,6 +4,7 @@
 from qgis.core import QgsDistanceArea, QgsPointXY
 
 from .errors import bad_input
+from .feedback import until_cancelled
 from .text import tr
 from .values import given, word
 
@@ -21,7 +22,7 @@ def find_pairs(observers, targets, by_name, max_distance, crs, context, feedback
     """Pairs of places in the order of the observers, then of the targets.
 
     `by_name` pairs places with the same name, else each observer looks at all targets; both within `max_distance`
-    (metres on the ellipsoid; None = any). A place does not look at itself.
+    (metres on the ellipsoid; None = any). A place does not look at itself. Raises Stopped when cancelled.
     """
     ruler = QgsDistanceArea()
     if crs.isValid():
@@ -30,7 +31,8 @@ def find_pairs(observers, targets, by_name, max_distance, crs, context, feedback
     partners = _by_name(targets) if by_name else {}
     pairs, met, too_far = [], set(), 0
     for observer in observers:
-        for target in partners.get(observer.name, []) if by_name else targets:
+        candidates = partners.get(observer.name, []) if by_name else targets
+        for target in until_cancelled(candidates, feedback):
             met.update((id(observer), id(target)))
             if (observer.x, observer.y) == (target.x, target.y):
                 continue

@@ -13,6 +13,7 @@ from qgis.PyQt.QtGui import QIcon
 
 from .. import core
 from ..errors import bad_input, core_errors
+from ..feedback import Stopped
 from ..text import algorithm_help, parameter_help, tr
 from ..values import given
 
@@ -112,20 +113,26 @@ class SightboundAlgorithm(QgsProcessingAlgorithm):
                 raise QgsProcessingException(message)
             self._check_folders(parameters)
             self.read_input(parameters, context, feedback)
-        except QgsProcessingException as error:
+        except (QgsProcessingException, Stopped) as error:
             self._failure = error
         return True
 
     def processAlgorithm(self, parameters, context, feedback):
-        if self._failure is not None:
-            raise self._failure
+        try:
+            if self._failure is not None:
+                raise self._failure
+            return self._computed(parameters, context, feedback)
+        except Stopped:
+            feedback.pushInfo(tr("Cancelled: nothing was written."))
+            return {}
+
+    def _computed(self, parameters, context, feedback):
         sightbound = self._require_core()
         try:
             with core_errors(paths=self.paths):
                 return self.compute(sightbound, parameters, context, feedback)
-        except sightbound.Cancelled:
-            feedback.pushInfo(tr("Cancelled: nothing was written."))
-            return {}
+        except sightbound.Cancelled as cancelled:
+            raise Stopped from cancelled
 
     def _require_core(self):
         try:

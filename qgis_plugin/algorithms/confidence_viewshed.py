@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Confidence viewshed: how sure is it that each cell of a DEM is seen from the observers?"""
 
+from contextlib import ExitStack
 from dataclasses import dataclass
 
 from qgis.core import (
@@ -18,7 +19,7 @@ from ..defaults import default
 from ..error_block import check_error_block, log_error_model, read_error_block
 from ..errors import core_errors
 from ..feedback import Progress
-from ..observer_outputs import write_observer_rasters, write_observer_table
+from ..observer_outputs import observer_rasters, write_observer_table
 from ..rasters import creation_options, open_dem, read_extent, read_raster
 from ..styling import style_when_loaded
 from ..text import tr
@@ -114,7 +115,7 @@ class ConfidenceViewshed(SightboundAlgorithm):
 
     def read_input(self, parameters, context, feedback):
         dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
-        places, source = observers.read_observers(self, parameters, context, dem)
+        places, source = observers.read_observers(self, parameters, context, feedback, dem)
         self.job = Job(
             dem=dem,
             vertical_unit=word(self, parameters, "VERTICAL_UNIT", context),
@@ -154,14 +155,16 @@ class ConfidenceViewshed(SightboundAlgorithm):
         result = sightbound.viewshed(dem, spots, progress=progress, **arguments)
         self._log(result.report, feedback)
         results = {}
-        if rasters_too:
-            results["OUTPUT_FOLDER"] = write_observer_rasters(
-                self, sightbound, dem, job, arguments, parameters, context, feedback
-            )
-        feedback.setProgressText(tr("Writing"))
-        results.update(self._write(result, parameters, context, feedback))
-        if given(parameters, "OUTPUT_OBSERVERS"):
-            results["OUTPUT_OBSERVERS"] = write_observer_table(self, job, result.report, parameters, context)
+        with ExitStack() as stack:
+            if rasters_too:
+                folder = self.parameterAsString(parameters, "OUTPUT_FOLDER", context)
+                stack.enter_context(observer_rasters(folder, sightbound, dem, job, arguments, feedback))
+                results["OUTPUT_FOLDER"] = folder
+            feedback.setProgressText(tr("Writing"))
+            results.update(self._write(result, parameters, context, feedback))
+            if given(parameters, "OUTPUT_OBSERVERS"):
+                table = write_observer_table(self, job, result.report, parameters, context)
+                results["OUTPUT_OBSERVERS"] = table
         results.update({name: result.report[key] for name, _, key in NUMBERS})
         results["ERROR_MODEL_USED"] = result.report["error_model"]
         return results

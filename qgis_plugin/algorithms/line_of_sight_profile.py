@@ -125,7 +125,15 @@ class LineOfSightProfile(SightboundAlgorithm):
         self.error = read_error_block(self, parameters, context, feedback, self.dem)
         ends = [
             read_points(
-                self, parameters, layer, context, self.dem, [height], {height: f"{height}_FIELD"}, naming
+                self,
+                parameters,
+                layer,
+                context,
+                feedback,
+                self.dem,
+                [height],
+                {height: f"{height}_FIELD"},
+                naming,
             )[0]
             for layer, height, naming in (
                 ("OBSERVERS", "OBSERVER_HEIGHT", "OBSERVER_FIELD"),

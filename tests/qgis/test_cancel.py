@@ -4,6 +4,12 @@
 import numpy
 import pytest
 import scenes
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsVectorLayer,
+)
 
 
 @pytest.fixture
@@ -50,3 +56,57 @@ def test_lines_of_sight_leave_nothing(run, large_dem, many, tmp_path):
     results = run("lineofsightprofile", feedback=log, INPUT=large_dem, OBSERVERS=many, TARGETS=many,
                   OUTPUT=str(tmp_path / "lines.gpkg"), OUTPUT_HTML=str(tmp_path / "page.html"))  # fmt: skip
     assert results == {} and left_in(tmp_path, "large.tif", "many.gpkg") == []
+
+
+@pytest.mark.parametrize("percent", [70, 94, 96])
+def test_rasters_of_an_earlier_run_stay(run, large_dem, many, tmp_path, percent):
+    """Cancelled while the folder is made, at its end, and while the combined rasters are written."""
+    folder = tmp_path / "each"
+    folder.mkdir()
+    earlier = {"1.tif": b"raster", "1.tif.aux.xml": b"statistics", "1.qml": b"style", "notes.txt": b"notes"}
+    for name, content in earlier.items():
+        (folder / name).write_bytes(content)
+    log = scenes.Log(cancel_at=percent)
+    run("confidenceviewshed", feedback=log, INPUT=large_dem, OBSERVERS=many, MAX_DISTANCE=300,
+        VERTICAL_ACCURACY=1.0, OUTPUT=str(tmp_path / "out.tif"), OUTPUT_FOLDER=str(folder))  # fmt: skip
+    assert log.isCanceled() and {one.name: one.read_bytes() for one in folder.iterdir()} == earlier
+
+
+def test_cancelled_before_the_input_is_read(run, dem, observers, tmp_path):
+    for algorithm, outputs in (("confidenceviewshed", {}), ("lineofsightprofile", {"TARGETS": observers})):
+        log = scenes.Log()
+        log.cancel()
+        out = str(tmp_path / ("out.tif" if algorithm == "confidenceviewshed" else "out.gpkg"))
+        results = run(algorithm, feedback=log, INPUT=dem, OBSERVERS=observers, OUTPUT=out, **outputs)
+        assert results == {} and left_in(tmp_path, "dem.tif", "observers.gpkg") == []
+        assert log.errors == [] and any("Cancelled" in text for text in log.infos)
+
+
+def test_pairing_stops_between_pairs():
+    from sightbound_qgis.feedback import Stopped
+    from sightbound_qgis.observers import Place
+    from sightbound_qgis.pairs import find_pairs
+
+    class Impatient(QgsProcessingFeedback):
+        asked = 0
+
+        def isCanceled(self):
+            self.asked += 1
+            return self.asked > 5
+
+    places = [Place(f"feature {i}", str(i), float(i), 0.0, None, None) for i in range(1000)]
+    log = Impatient()
+    with pytest.raises(Stopped):
+        find_pairs(places, places, False, None, QgsCoordinateReferenceSystem(), QgsProcessingContext(), log)
+    assert log.asked == 6
+
+
+def test_copying_polygons_stops(tmp_path, context):
+    from sightbound_qgis.error_block import _copy_polygons
+    from sightbound_qgis.feedback import Stopped
+
+    layer = QgsVectorLayer(str(scenes.write_terrain_types(tmp_path / "types.gpkg")), "types")
+    log = scenes.Log()
+    log.cancel()
+    with pytest.raises(Stopped):
+        _copy_polygons(layer, layer.fields().lookupField("kind"), layer.crs(), context, log)

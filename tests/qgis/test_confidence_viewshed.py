@@ -10,6 +10,7 @@ import scenes
 from osgeo import gdal
 from qgis.core import (
     QgsProcessing,
+    QgsProcessingException,
     QgsProcessingFeatureSourceDefinition,
     QgsProperty,
     QgsVectorLayer,
@@ -137,6 +138,26 @@ def test_folder_holds_one_styled_raster_per_observer(run, dem, tmp_path):
     ]
     p, _ = scenes.read(folder / "twin.tif")
     assert max(p.shape) < 25
+
+
+def test_folder_is_replaced_whole_or_not_at_all(run, dem, observers, tmp_path):
+    folder = tmp_path / "each"
+    how = {"INPUT": dem, "OBSERVERS": observers, "ID_FIELD": "name", "MAX_DISTANCE": 60, "OUTPUT_FOLDER": str(folder),
+           "OUTPUT": QgsProcessing.TEMPORARY_OUTPUT}  # fmt: skip
+    run("confidenceviewshed", **how)
+    stale = folder / "hut.tif.aux.xml"
+    stale.write_text("statistics of an older raster")
+    before = {one.name: one.read_bytes() for one in folder.iterdir()}
+    run("confidenceviewshed", **how, TARGET_HEIGHT=20)
+    after = {one.name: one.read_bytes() for one in folder.iterdir()}
+    assert after["hut.tif"] != before["hut.tif"] and set(before) - set(after) == {stale.name}
+    (folder / "tower_a_b.tif").unlink()
+    (folder / "tower_a_b.tif").mkdir()  # in the way of the last file
+    with pytest.raises(QgsProcessingException, match="OUTPUT_FOLDER"):
+        run("confidenceviewshed", **how)
+    del after["tower_a_b.tif"]
+    assert {one.name: one.read_bytes() for one in folder.iterdir() if one.is_file()} == after
+    assert {one.name for one in folder.iterdir() if one.is_dir()} == {"tower_a_b.tif"}
 
 
 def test_table_keeps_the_attributes_and_adds_areas(run, dem, observers):
