@@ -383,8 +383,9 @@ class SightLine::Search {
     return scene_.ends_move ? (1 - t) * line_.eye_sampling_ + t * line_.target_sampling_ : 0;
   }
 
-  JudgedPlace described(const Stencil& stencil, bool outside, double d, double xi) const {
+  JudgedPlace described(Stencil stencil, bool outside, double d, double xi) const {
     JudgedPlace place;
+    outside = outside || !stencil.give_up_slivers(scene_.heights.data());
     place.xi = xi;
     place.share = line_.path_.share(xi);
     place.line = height(place.share);
@@ -400,6 +401,8 @@ class SightLine::Search {
     if (!is_between(t)) return;
     const double z = outside ? std::numeric_limits<double>::quiet_NaN() : stencil.of(scene_.heights.data());
     if (std::isnan(z)) {
+      Stencil whole = stencil;
+      if (!outside && whole.give_up_slivers(scene_.heights.data())) return judge(whole, false, d, xi);
       if (!scene_.see_across_nodata && objective_.take_unknown()) {
         critical_xi_ = xi;
         hole_ = true;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "error_model/error_field.h"
@@ -14,6 +15,9 @@ inline int whole(double value) {
   const int i = static_cast<int>(value);
   return i - (static_cast<double>(i) > value);
 }
+
+// Samples of this weight or less make no hole: a line through a sample passes it by rounding.
+inline constexpr double kSliver = 1e-4;
 
 // The terrain at a place: up to three samples with weights. Those of weight 0 do not count, NaN or not: in
 // their stead a sample that does is named.
@@ -35,6 +39,20 @@ struct Stencil {
       if (weights[i] == 0) stencil.sample[i] = samples[counts];
     }
     return stencil;
+  }
+
+  // With slivers that are NaN in `values` given to the sample that weighs most. False: a NaN weighs more than that.
+  bool give_up_slivers(const float* values) {
+    std::size_t most = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+      if (weight[i] > weight[most]) most = i;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!std::isnan(values[sample[i]])) continue;
+      if (weight[i] > kSliver) return false;
+      sample[i] = sample[most];
+    }
+    return true;
   }
 
   double of(const float* values) const {

@@ -13,10 +13,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pyproj
 import sightbound as sb
-from sight_oracle import Errors, Oracle, probability, verdict, z_two_sided
+from sight_oracle import END_ZONE, Errors, Oracle, probability, verdict, z_two_sided
 
 P_TOLERANCE = 0.005      # of p, against the definition
 TIE = 1e-6               # of k: where a verdict may fall either way
+ZONE_TIE = 1e-5          # cells: a place this near to an end zone's border may count as inside or outside
 STRAIGHT_CELLS = 0.01    # deviation up to which the straight grid line may stand in
 HEIGHT_TOLERANCE = 0.1   # metres, of the lowest visible heights
 
@@ -122,9 +123,7 @@ def agreement(scene, result=None, heights=False):
             continue
         candidates = [sight]
         if not _cell_fits(sight, cell, p, claimed, certain, likely, scene.confidence, z):
-            t_xy = tuple(float(v) for v in oracle.frame.xy(cell[1], cell[0]))
-            if 0 < oracle.deviation(xy, t_xy) < STRAIGHT_CELLS:
-                candidates.append(oracle.sight(xy, t_xy, scene.observer_height, scene.target_height, path="grid", **scene.how))
+            candidates.extend(admissible(oracle, scene, xy, cell))
         if not any(_cell_fits(s, cell, p, claimed, certain, likely, scene.confidence, z) for s in candidates):
             text = f"p {p[cell]:.5f} verdict {claimed[cell]}, definition k {[f'{s.k:.7f}' for s in candidates]} " \
                    f"p {probability(sight.k, scene.confidence):.5f} verdict {verdict(sight.k, scene.confidence)} at {sight.distance:.1f} m"
@@ -134,6 +133,16 @@ def agreement(scene, result=None, heights=False):
     return wrong
 
 
+def admissible(oracle, scene, xy, cell):
+    """The other readings of the definition: the straight line where it may stand in, and places on the very border of an end
+    zone taken in or left out."""
+    t_xy = tuple(float(v) for v in oracle.frame.xy(cell[1], cell[0]))
+    straight = ["grid"] if 0 < oracle.deviation(xy, t_xy) < STRAIGHT_CELLS else []
+    for path in ["geodesic", *straight]:
+        for zone in (END_ZONE, END_ZONE - ZONE_TIE, END_ZONE + ZONE_TIE):
+            yield oracle.sight(xy, t_xy, scene.observer_height, scene.target_height, path=path, end_zone=zone, **scene.how)
+
+
 def _cell_fits(sight, cell, p, claimed, certain, likely, confidence, z):
     if not fits(p[cell], claimed[cell], sight.k, confidence):
         return False
@@ -141,7 +150,7 @@ def _cell_fits(sight, cell, p, claimed, certain, likely, confidence, z):
 
 
 def _height_fits(given, definition):
-    if math.isinf(definition):
+    if not math.isfinite(definition):
         return not math.isfinite(given)
     return abs(given - definition) <= HEIGHT_TOLERANCE + 1e-6 * abs(definition)
 

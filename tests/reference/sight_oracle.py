@@ -34,6 +34,8 @@ CERTAIN_K = 3.29        # beyond, p is 0 or 1
 SAMPLES_PER_CELL = 6    # dense sampling of the path before root finding
 SNAP = 2e-8             # a sample coordinate this near to an integer is that integer (UTM northings carry 1e-9 m)
 ROOT = 1e-8             # crossings are found to this many cells
+RIM = 0.01              # cells: a place this far outside the samples follows their rim
+SLIVER = 1e-4           # a nodata sample of this weight or less makes no hole
 AT_END = 1e-4           # a place this many cells from an end is the end itself, and not judged
 
 
@@ -176,7 +178,7 @@ class Sight:
     _needed: object = field(repr=False, default=None)
 
     def needed_height(self, z):
-        """Smallest height >= 0 above the target's ground with k* >= z; inf when no height does it."""
+        """Smallest height >= 0 above the target's ground with k* >= z; inf when no height does it, nan over unknown ground."""
         return self._needed(z)
 
 
@@ -218,7 +220,8 @@ class Oracle:
         weights are nan. Weights below SNAP count as zero: a place on an edge has two corners, on a sample one."""
         rows, cols = self.z.shape
         col, row = _snap(col), _snap(row)
-        outside = ~((col >= 0) & (col <= cols - 1) & (row >= 0) & (row <= rows - 1))
+        outside = (col < -RIM) | (col > cols - 1 + RIM) | (row < -RIM) | (row > rows - 1 + RIM)
+        col, row = np.clip(col, 0, cols - 1), np.clip(row, 0, rows - 1)
         c = np.clip(np.floor(col), 0, max(cols - 2, 0)).astype(int)
         r = np.clip(np.floor(row), 0, max(rows - 2, 0)).astype(int)
         fx, fy = col - c, row - r
@@ -234,13 +237,16 @@ class Oracle:
         return corner_rows, corner_cols, np.where(outside, np.nan, weights)
 
     def at(self, values, col, row):
-        """TIN interpolation; nan outside or when a corner that counts is nan."""
+        """TIN interpolation; nan outside or when a corner that counts is a hole of the DEM."""
         r, c, w = self.corners(col, row)
+        w = np.where(np.isnan(self.z[r, c]) & (w <= SLIVER), 0.0, w)
+        w = w / np.sum(w, axis=0)
         return np.sum(np.where(w == 0, 0.0, w * values[r, c]), axis=0)
 
     def ground_distance(self, col, row):
         """Distance to the nearest sample. The cell size is that of the square's first row in the NW-SE order."""
-        col, row = _snap(col), _snap(row)
+        rows, cols = self.z.shape
+        col, row = np.clip(_snap(col), 0, cols - 1), np.clip(_snap(row), 0, rows - 1)
         size_row = np.ceil(row) if self.anti else np.floor(row)
         col_m, row_m = self.steps[np.clip(size_row, 0, len(self.steps) - 1).astype(int)].T
         fx, fy = col - np.floor(col), row - np.floor(row)
@@ -286,7 +292,7 @@ class Oracle:
         return places, col, row
 
     def sight(self, o_xy, t_xy, observer_height=1.7, target_height=0.0, *, refraction=0.13, curvature=True, stand="model",
-              height_reference="ground", see_across=False, path="geodesic"):
+              height_reference="ground", see_across=False, path="geodesic", end_zone=END_ZONE):
         frame = self.frame
         (oc, orow), (tc, trow) = frame.colrow(*o_xy), frame.colrow(*t_xy)
         ground_o, ground_t = self.at(self.ground, oc, orow), self.at(self.ground, tc, trow)
@@ -305,7 +311,7 @@ class Oracle:
         t = s / distance
         terrain = self.at(self.z, col, row)
         line = (1 - t) * zo + t * zt - bend * t * (1 - t) * distance ** 2
-        near_end = (s < END_ZONE * self.cell) | (distance - s < END_ZONE * self.cell)
+        near_end = (s < end_zone * self.cell) | (distance - s < end_zone * self.cell)
         sampling = np.where(near_end, 0.0, self.at(self.sigma_s, col, row))
         sigma = np.maximum(sampling + self.sigma_g(col, row), FLOOR) + (1 - t) * sway[0] + t * sway[1]
         known = ~np.isnan(terrain)
@@ -315,6 +321,8 @@ class Oracle:
             k = min(k, 0.0)
 
         def needed(z):
+            if math.isnan(ground_t):
+                return math.nan     # nothing to count from
             if hole and z > 0:
                 return math.inf
             eye = (1 - t) * zo - bend * t * (1 - t) * distance ** 2
@@ -333,7 +341,7 @@ class Oracle:
         result = {}
         for row, col in cells if cells is not None else np.ndindex(rows, cols):
             result[row, col] = None
-            if math.isnan(self.z[row, col]) or math.isnan(self.ground[row, col]):
+            if math.isnan(self.z[row, col]) or (how.get("height_reference") != "absolute" and math.isnan(self.ground[row, col])):
                 continue
             t_xy = tuple(float(v) for v in self.frame.xy(col, row))
             sight = self.sight(o_xy, t_xy, observer_height, target_height, **how)
