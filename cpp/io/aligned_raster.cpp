@@ -121,8 +121,12 @@ Grid<float> warp(const Band& band, const std::string& file_crs, const DemSource&
   options->panSrcBands[0] = band.number;
   options->panDstBands[0] = 1;
   if (band.decoder.nodata) GDALWarpInitSrcNoDataReal(options.get(), *band.decoder.nodata);
-  GDALWarpInitDstNoDataReal(options.get(), std::numeric_limits<double>::quiet_NaN());
-  options->papszWarpOptions = CSLSetNameValue(options->papszWarpOptions, "INIT_DEST", "NO_DATA");
+  // Where the file may have holes, values beside them come from the neighbours that there are. A file without
+  // any takes the warper's fast kernel, half the time; the target is NaN already.
+  if (band.decoder.nodata || band.masked) {
+    GDALWarpInitDstNoDataReal(options.get(), std::numeric_limits<double>::quiet_NaN());
+    options->papszWarpOptions = CSLSetNameValue(options->papszWarpOptions, "INIT_DEST", "NO_DATA");
+  }
   options->papszWarpOptions = CSLSetNameValue(options->papszWarpOptions, "NUM_THREADS", threads.c_str());
   options->pfnTransformer = GDALApproxTransform;
   options->pTransformerArg = transformer.get();

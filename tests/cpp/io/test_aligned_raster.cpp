@@ -3,6 +3,7 @@
 // oracle wherever the grids and CRS differ.
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -95,6 +96,31 @@ TEST_F(AlignedRasterTest, OtherCellSizes) {
     expect_field(aligned(coarse, *on, kWindow), *on, kWindow, 1e-4);
     const RasterFileSpec shifted = sampled({499903, 10, 0, 5000103, 0, -10}, 60, 60);
     expect_field(aligned(shifted, *on, kWindow), *on, kWindow, 1e-4);
+  }
+}
+
+TEST_F(AlignedRasterTest, ACoarseRasterOfTheSameExtentIsKnownToItsEdges) {
+  const auto on = dem();
+  for (const std::optional<double>& nodata : {std::optional<double>(), std::optional<double>(-1)}) {
+    RasterFileSpec coarse = sampled({500000, 60, 0, 5000000, 0, -60}, 5, 5);
+    coarse.nodata = nodata;
+    const Grid<float> got = aligned(coarse, *on, on->window());
+    for (const float sigma : got.values()) ASSERT_FALSE(std::isnan(sigma));
+    EXPECT_NEAR(got.at(15, 15), field(500155, 4999845), 1e-4);
+    EXPECT_NEAR(got.at(0, 0), field(500030, 4999970), 1e-4);  // flat beyond the last centres
+  }
+}
+
+TEST_F(AlignedRasterTest, HolesStayHoles) {
+  const auto on = dem();
+  RasterFileSpec coarse = sampled({500000, 60, 0, 5000000, 0, -60}, 5, 5);
+  for (const double hole : {-1.0, static_cast<double>(NAN)}) {
+    coarse.nodata = std::isnan(hole) ? std::nullopt : std::optional<double>(hole);
+    coarse.values[12] = hole;  // the middle one: rows and columns 12 to 17 of the DEM
+    const Grid<float> got = aligned(coarse, *on, on->window());
+    EXPECT_TRUE(std::isnan(got.at(15, 15)));
+    EXPECT_FALSE(std::isnan(got.at(3, 3)));
+    EXPECT_FALSE(std::isnan(got.at(15, 26)));
   }
 }
 
