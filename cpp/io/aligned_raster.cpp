@@ -105,12 +105,14 @@ Grid<float> warp(const Band& band, const std::string& file_crs, const DemSource&
   const std::unique_ptr<void, TransformerDelete> transformer(
       GDALCreateApproxTransformer(GDALGenImgProjTransform, exact.get(), kLargestShift));
 
+  constexpr double kWarpBytes = 16e6;  // per chunk: the grain of cancelling
   const std::string threads = std::to_string(Workers::count_here());
   gdal::ProgressBridge bridge(progress);
   const std::unique_ptr<GDALWarpOptions, WarpOptionsDelete> options(GDALCreateWarpOptions());
   options->hSrcDS = band.dataset;
   options->hDstDS = target.get();
   options->eResampleAlg = GRA_Bilinear;
+  options->dfWarpMemoryLimit = kWarpBytes;
   options->eWorkingDataType = band.decoder.type == GDT_Byte || band.decoder.type == GDT_Int16 ||
                                       band.decoder.type == GDT_UInt16 || band.decoder.type == GDT_Float32
                                   ? GDT_Float32

@@ -11,8 +11,10 @@
 
 namespace sightbound::gdal {
 
-// A one-band Float32 dataset over the grid's own memory, placed as `geotransform`, without CRS, nodata NaN.
+// A one-band Float32 dataset over memory of the grid, whole or `rows` of it from `row` on; `geotransform` is
+// the whole grid's. Without CRS, nodata NaN.
 GDALDatasetUniquePtr dataset_over(Grid<float>&, const Geotransform&);
+GDALDatasetUniquePtr dataset_over(Grid<float>&, const Geotransform&, int row, int rows);
 
 // Passes a Progress to GDAL: GDAL stops when it is cancelled, rethrow() then says so.
 class ProgressBridge {

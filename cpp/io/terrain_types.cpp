@@ -209,26 +209,53 @@ std::vector<Polygon> polygons_of(OGRLayer& layer, int field, const Crossing* cro
   return polygons;
 }
 
-void burn(const std::vector<Polygon>& polygons, GDALDataset& target, const TerrainTypes& types,
-          Progress& progress) {
-  std::vector<OGRGeometryH> shapes;
-  std::vector<double> metres;
-  for (const Polygon& polygon : polygons) {
-    shapes.push_back(OGRGeometry::ToHandle(polygon.shape.get()));
-    metres.push_back(polygon.metres);
+// Rows of the grid that a polygon may touch, [first, end).
+struct Rows {
+  double first, end;
+};
+Rows rows_of(const Polygon& polygon, const Geotransform& geotransform) {
+  OGREnvelope box;
+  polygon.shape->getEnvelope(&box);
+  Rows rows{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const double x : {box.MinX, box.MaxX}) {
+    for (const double y : {box.MinY, box.MaxY}) {
+      const double row = geotransform.to_raster(x, y).y;
+      rows = {std::min(rows.first, row - 1), std::max(rows.end, row + 2)};
+    }
   }
-  constexpr int kChunks = 32;  // the grain of cancelling
-  CPLStringList options;
-  options.SetNameValue("CHUNKYSIZE", std::to_string(std::max(64, target.GetRasterYSize() / kChunks)).c_str());
-  const int band = 1;
-  gdal::ProgressBridge bridge(progress);
-  const gdal::ErrorLog log;
-  const CPLErr failed = GDALRasterizeGeometries(
-      GDALDataset::ToHandle(&target), 1, &band, static_cast<int>(shapes.size()), shapes.data(), nullptr,
-      nullptr, metres.data(), options.List(), gdal::ProgressBridge::call, &bridge);
-  bridge.rethrow();
-  if (failed != CE_None)
-    throw IoError(named(types) + " cannot be burnt into the DEM's grid: " + log.message());
+  return rows;
+}
+
+// Strip by strip, each with the polygons that touch it.
+void burn(const std::vector<Polygon>& polygons, Grid<float>& grid, const Geotransform& geotransform,
+          const TerrainTypes& types, Progress& progress) {
+  constexpr int kStripCells = 2'000'000;  // some 20 ms: the grain of cancelling
+  const int strip_rows = std::clamp(kStripCells / grid.cols(), 1, grid.rows());
+  std::vector<Rows> touched;
+  for (const Polygon& polygon : polygons) touched.push_back(rows_of(polygon, geotransform));
+
+  for (int row = 0; row < grid.rows(); row += strip_rows) {
+    progress.check();
+    const int rows = std::min(strip_rows, grid.rows() - row);
+    std::vector<OGRGeometryH> shapes;
+    std::vector<double> metres;
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+      if (touched[i].end <= row || touched[i].first >= row + rows) continue;
+      shapes.push_back(OGRGeometry::ToHandle(polygons[i].shape.get()));
+      metres.push_back(polygons[i].metres);
+    }
+    if (shapes.empty()) continue;
+    const gdal::ErrorLog log;
+    const GDALDatasetUniquePtr target = gdal::dataset_over(grid, geotransform, row, rows);
+    const int band = 1;
+    gdal::ProgressBridge bridge(progress);
+    const CPLErr failed = GDALRasterizeGeometries(
+        GDALDataset::ToHandle(target.get()), 1, &band, static_cast<int>(shapes.size()), shapes.data(),
+        nullptr, nullptr, metres.data(), nullptr, gdal::ProgressBridge::call, &bridge);
+    bridge.rethrow();
+    if (failed != CE_None)
+      throw IoError(named(types) + " cannot be burnt into the DEM's grid: " + log.message());
+  }
 }
 
 }  // namespace
@@ -246,8 +273,7 @@ Grid<float> terrain_type_variation(const TerrainTypes& types, const DemSource& d
                        ": no polygon lies in the part of the DEM that is used; check the layer's CRS.");
   }
   Grid<float> out(window.rows, window.cols, std::numeric_limits<float>::quiet_NaN());
-  const GDALDatasetUniquePtr target = gdal::dataset_over(out, dem.geotransform().of_window(window));
-  burn(polygons, *target, types, progress);
+  burn(polygons, out, dem.geotransform().of_window(window), types, progress);
   return out;
 }
 

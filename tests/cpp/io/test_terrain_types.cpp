@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -117,6 +118,30 @@ TEST_F(TerrainTypesTest, UnknownClassesAreListedWithTheKnown) {
   const std::string message = refusal(types, "cover", {{"rock", 4}, {"sand", 0.2}});
   EXPECT_TRUE(says(message, "'heath', 'moor'"));
   EXPECT_TRUE(says(message, "Known are 'rock', 'sand'"));
+}
+
+// Wide enough for several strips of rows; a slanted band crosses them all.
+TEST_F(TerrainTypesTest, LargeWindowsAreBurntInStrips) {
+  constexpr int kRows = 400, kCols = 12000;
+  const auto dem = open_dem(make_raster(
+      {.rows = kRows, .cols = kCols, .values = std::vector<double>(kRows * kCols, 1), .type = GDT_Byte},
+      path("wide.tif")));
+  const std::string band =
+      R"({"type":"Feature","properties":{"delta":2},"geometry":{"type":"Polygon","coordinates":[[)"
+      R"([500000,5000000],[500100,5000000],[504100,4996000],[504000,4996000],[500000,5000000]]]}})";
+  const std::string file =
+      write_text("band.geojson", collection(band + "," + feature(5, 150, 6, 350, R"("delta":3)")));
+  Progress progress;
+  const Grid<float> got = terrain_type_variation({file, "", "delta", {}}, *dem, dem->window(), progress);
+  int wrong = 0;
+  for (int r = 0; r < kRows; ++r) {
+    for (int c = 0; c < 500; ++c) {
+      const bool in_post = c == 5 && r >= 150 && r<350, in_band = c> r && c < r + 10;  // c = r is on the edge
+      if (c == r || c == r + 10) continue;
+      wrong += in_post ? got.at(r, c) != 3 : in_band ? got.at(r, c) != 2 : !std::isnan(got.at(r, c));
+    }
+  }
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST_F(TerrainTypesTest, AnotherCrs) {
