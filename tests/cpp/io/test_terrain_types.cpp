@@ -23,7 +23,11 @@ using testing::says;
 // A square of the DEM's cells [col, col_end) x [row, row_end), as a GeoJSON feature in EPSG:32632.
 std::string feature(int col, int row, int col_end, int row_end, const std::string& properties) {
   const auto corner = [](int c, int r) {
-    return "[" + std::to_string(500000 + 10 * c) + "," + std::to_string(5000000 - 10 * r) + "]";
+    std::string text = "[";
+    return text.append(std::to_string(500000 + 10 * c))
+        .append(",")
+        .append(std::to_string(5000000 - 10 * r))
+        .append("]");
   };
   return R"({"type":"Feature","properties":{)" + properties +
          R"(},"geometry":{"type":"Polygon","coordinates":[[)" + corner(col, row) + "," +
