@@ -385,22 +385,21 @@ def _lines(col, row, anti):
 def _line_crossings(coordinates, anti, s):
     """All s where the path crosses (or touches) a line of the TIN; a path that runs along a line does not cross it."""
     values = _lines(*coordinates(s), anti)
+    while np.abs(np.diff(values)).max() >= 1:
+        s = np.linspace(s[0], s[-1], 2 * s.size)
+        values = _lines(*coordinates(s), anti)
     for which in range(3):
         s, values = _with_extrema(coordinates, anti, which, s, values)
-    found, low, high, kind, number = [], [], [], [], []
-    for which, v in enumerate(values):
-        for n in range(math.ceil(v.min() - SNAP), math.floor(v.max() + SNAP) + 1):
-            side = np.where(np.abs(v - n) < SNAP, 0, np.sign(v - n))
-            for i in np.flatnonzero(side[:-1] * side[1:] < 0):
-                low.append(i)
-                high.append(i + 1)
-                kind.append(which)
-                number.append(n)
-            on = np.concatenate([[False], side == 0, [False]])
-            found.extend(s[on[1:-1] & ~on[:-2] & ~on[2:]])
-    if not low:
+    # Neighbouring nodes are less than a cell apart, so at most one line of a kind lies between them.
+    on = np.abs(values - np.round(values)) < SNAP
+    beside = np.pad(on, ((0, 0), (1, 1)))
+    found = list(np.broadcast_to(s, values.shape)[on & ~beside[:, :-2] & ~beside[:, 2:]])
+    below = np.floor(values)
+    kind, low = np.nonzero(~on[:, :-1] & ~on[:, 1:] & (below[:, :-1] != below[:, 1:]))
+    if low.size == 0:
         return found
-    n, lanes = np.array(number, float), np.arange(len(number))
+    high, lanes = low + 1, np.arange(low.size)
+    n = np.maximum(below[kind, low], below[kind, high])
 
     def f(where):
         return _lines(*coordinates(where), anti)[kind, lanes] - n
@@ -411,7 +410,9 @@ def _line_crossings(coordinates, anti, s):
 def _with_extrema(coordinates, anti, which, s, values):
     """Adds the places where a coordinate turns to the nodes, so that no two crossings hide between neighbours."""
     v = values[which]
-    for i in np.flatnonzero((v[1:-1] - v[:-2]) * (v[2:] - v[1:-1]) < 0) + 1:
+    before, after = v[1:-1] - v[:-2], v[2:] - v[1:-1]
+    bend = np.maximum(np.abs(before), np.abs(after))    # the turn lies within this of the node's value
+    for i in np.flatnonzero((before * after < 0) & (bend > SNAP) & (np.abs(v - np.round(v))[1:-1] <= bend)) + 1:
         sign = 1.0 if v[i] > v[i - 1] else -1.0
         low, high = s[i - 1], s[i + 1]
         for _ in range(40):
