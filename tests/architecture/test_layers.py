@@ -21,6 +21,8 @@ BENEATH = {
 ONLY_IN = {
     r"(gdal\w*|cpl_\w+|ogr\w*|proj\w*)(\.h|/.*)": "io",
     r"GeographicLib/.*": "earth",
+    r"CGAL/.*": "terrain",
+    r"expat\.h": "io",
 }
 FORBIDDEN_IN_CORE = r"(pybind11/|Python\.h|Q[A-Z]|qgs|openvdb/|iostream$)"
 
