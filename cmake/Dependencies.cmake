@@ -11,6 +11,11 @@ find_package(GDAL CONFIG REQUIRED)
 find_package(PROJ CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 
+# Debian keeps OpenVDB's find module out of CMake's own folders.
+file(GLOB openvdb_modules /usr/lib/*/cmake/OpenVDB /usr/lib/cmake/OpenVDB)
+list(APPEND CMAKE_MODULE_PATH ${openvdb_modules})
+find_package(OpenVDB MODULE REQUIRED COMPONENTS openvdb)
+
 if(SIGHTBOUND_TESTS)
   find_package(GTest REQUIRED)
 endif()

@@ -13,9 +13,10 @@ BENEATH = {
     "terrain": {"base"},
     "earth": {"base", "terrain"},
     "error_model": {"base", "terrain", "earth"},
-    "sight": {"base", "terrain", "earth", "error_model"},
+    "volume": {"base", "terrain", "earth", "error_model"},
+    "sight": {"base", "terrain", "earth", "error_model", "volume"},
     "io": {"base", "terrain", "earth", "error_model"},
-    "jobs": {"base", "terrain", "earth", "error_model", "sight", "io"},
+    "jobs": {"base", "terrain", "earth", "error_model", "volume", "sight", "io"},
 }
 # Third-party headers that only one layer may know.
 ONLY_IN = {
@@ -23,8 +24,9 @@ ONLY_IN = {
     r"GeographicLib/.*": "earth",
     r"CGAL/.*": "terrain",
     r"expat\.h": "io",
+    r"openvdb/.*": "volume",
 }
-FORBIDDEN_IN_CORE = r"(pybind11/|Python\.h|Q[A-Z]|qgs|openvdb/|iostream$)"
+FORBIDDEN_IN_CORE = r"(pybind11/|Python\.h|Q[A-Z]|qgs|iostream$)"
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
 PRINTING = re.compile(r"\b(std::)?(cout|cerr|clog|printf|fprintf|puts|fputs|perror)\b")
@@ -85,6 +87,21 @@ def test_libraries_stay_in_their_layer():
                       if re.fullmatch(pattern, header) and layer_of(path) != home]
             if re.match(FORBIDDEN_IN_CORE, header):
                 wrong.append(f"{path.relative_to(ROOT)} includes {header}")
+    assert not wrong
+
+
+def test_openvdb_stays_inside_the_volume():
+    """cpp/volume shows OpenVDB to nobody: only its headers vdb*.h include it, and only its sources include those."""
+    inner = re.compile(r"volume/vdb\w*\.h")
+    wrong = []
+    for path in core_sources():
+        name = str(path.relative_to(ROOT / "cpp"))
+        if inner.fullmatch(name):
+            continue
+        for _, header in INCLUDE.findall(path.read_text(encoding="utf-8")):
+            if header.startswith("openvdb/") or (
+                    inner.fullmatch(header) and not (layer_of(path) == "volume" and path.suffix == ".cpp")):
+                wrong.append(f"{name} includes {header}")
     assert not wrong
 
 

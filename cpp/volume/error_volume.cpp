@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/error_volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "base/error.h"
+#include "base/memory_budget.h"
+#include "base/parallel.h"
+#include "volume/vdb.h"
+#include "volume/vdb_fill.h"
+#include "volume/voxel_size.h"
+
+namespace sightbound {
+
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g", value);
+  return text;
+}
+
+// A voxel side whose estimated need is within the budget: the smallest, to 5 %.
+double side_that_fits(const Surface& surface, VolumeOptions options, const VolumeNeed& need,
+                      std::size_t budget) {
+  const double flatness = need.voxel_height_m / need.voxel_m;
+  const auto fits = [&](double side) {
+    options.voxel_m = side;
+    options.voxel_height_m = side * flatness;
+    return estimate_need(surface, options).bytes <= budget;
+  };
+  double low = need.voxel_m, high = 2 * low;
+  while (!fits(high) && high < 1e4) {
+    low = high;
+    high *= 2;
+  }
+  while (high > 1.05 * low) {
+    const double middle = std::sqrt(low * high);
+    (fits(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+void require_memory(const Surface& surface, const VolumeOptions& options) {
+  const VolumeNeed need = estimate_need(surface, options);
+  const MemoryBudget budget(options.memory_bytes);
+  if (need.bytes <= budget.bytes()) return;
+  const double fits = side_that_fits(surface, options, need, budget.bytes());
+  budget.require(need.bytes, "The error volume with voxels of " + number(need.voxel_m) + " m",
+                 "voxel_m = " + number(std::ceil(fits * 100) / 100) + " would fit.");
+}
+
+}  // namespace
+
+ErrorVolume::ErrorVolume(ErrorVolume&&) noexcept = default;
+ErrorVolume& ErrorVolume::operator=(ErrorVolume&&) noexcept = default;
+ErrorVolume::~ErrorVolume() = default;
+
+ErrorVolume ErrorVolume::build(std::shared_ptr<const Surface> surface, const VolumeOptions& options,
+                               Progress& progress) {
+  const VoxelChoice voxels = choose_voxels(*surface, options);
+  ErrorVolume volume;
+  volume.voxel_m_ = voxels.voxel_m;
+  volume.voxel_height_m_ = voxels.voxel_height_m;
+  volume.largest_ratio_ = largest_ratio_of(options);
+  require_memory(*surface, options);
+
+  const Workers workers(options.threads);
+  const double end = static_cast<double>(volume.beyond_ratio());
+  auto trees = std::make_shared<Trees>(pack(end, end));
+  const VoxelSize size{voxels.voxel_m, voxels.voxel_height_m};
+  progress.begin(1, 1);
+  volume.unknown_ = fill_ratios(*surface, size, volume.largest_ratio_, trees->ratios, workers, progress);
+  progress.finish();
+
+  VolumeReport& report = volume.report_;
+  const HeldFaces held = count_held(*surface, voxels, options.confidence);
+  report.faces = held.faces;
+  report.faces_not_held = held.not_held;
+  report.finest_needed_m = held.finest_needed_m;
+  report.voxels = trees->ratios.activeVoxelCount();
+  report.leaves = trees->ratios.leafCount();
+  report.bytes = trees->ratios.memUsage() + trees->ambiguous.memUsage() + surface->bytes();
+  report.unknown_columns = volume.unknown_.count();
+  report.ambiguous_voxels = trees->ambiguous.activeVoxelCount();
+  if (held.not_held > 0) {
+    report.warnings.push_back(std::to_string(held.not_held) + " of " + std::to_string(held.faces) +
+                              " faces are too steep or too well known for voxels of " +
+                              number(voxels.voxel_m) +
+                              " m: there the volume is only known from outside. Voxels of " +
+                              number(held.finest_needed_m) + " m would hold all.");
+  }
+  volume.surface_ = std::move(surface);
+  volume.trees_ = std::move(trees);
+  return volume;
+}
+
+Voxel ErrorVolume::voxel_of(const Xyz& local) const {
+  return {static_cast<int>(std::floor(local.x / voxel_m_)), static_cast<int>(std::floor(local.y / voxel_m_)),
+          static_cast<int>(std::floor(local.z / voxel_height_m_))};
+}
+
+RatioInterval ErrorVolume::at(const Voxel& voxel) const {
+  return unpack(trees_->ratios.getValue(coord(voxel)));
+}
+bool ErrorVolume::is_ambiguous(const Voxel& voxel) const { return trees_->ambiguous.isValueOn(coord(voxel)); }
+
+CoverMasks build_covers(const Surface& surface, double confidence, const VolumeOptions& options,
+                        Progress& progress) {
+  const VoxelChoice voxels = choose_voxels(surface, options);
+  const Workers workers(options.threads);
+  auto inner = std::make_shared<VolumeMask::Tree>(), outer = std::make_shared<VolumeMask::Tree>();
+  progress.begin(1, 1);
+  fill_covers(surface, {voxels.voxel_m, voxels.voxel_height_m}, two_sided_quantile(confidence), inner->bits,
+              outer->bits, workers, progress);
+  progress.finish();
+  return {VolumeMask(inner), VolumeMask(outer), voxels.voxel_m, voxels.voxel_height_m};
+}
+
+}  // namespace sightbound
