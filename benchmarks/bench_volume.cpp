@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// bench_volume DEM (covers|bounds) (columns|faces) sigma voxel [variation [threads]]
+//
+// One line: seconds to build, and the process's peak memory less what it held before. Columns read the DEM's
+// grid, faces a TIN made of it. benchmarks/volume.sh runs the lot.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <string>
+
+#include <sys/resource.h>
+
+#include "base/memory_budget.h"
+#include "io/raster_dem.h"
+#include "terrain/regular_tin.h"
+#include "volume/dem_surface.h"
+#include "volume/error_volume.h"
+#include "volume/tin_surface.h"
+
+namespace {
+
+using namespace sightbound;
+
+double peak_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+std::shared_ptr<const Surface> surface_of(const DemSource& source, bool faces, double sigma,
+                                          double variation) {
+  Progress progress;
+  if (faces) {
+    Tin tin = regular_tin(source, 1, MemoryBudget(), progress).tin;
+    ErrorModel model;
+    model.vertical_rmse = sigma;
+    model.geologic_variation = variation;
+    TinError error = resolve_tin_error(tin, model, Metric::kVertical);
+    return std::make_shared<TinSurface>(std::move(tin), std::move(error), Metric::kVertical);
+  }
+  DemInput input{.heights = source.read(source.window(), progress),
+                 .error = {},
+                 .geotransform = source.geotransform(),
+                 .crs_wkt = source.crs_wkt()};
+  const auto& g = input.geotransform.coefficients();
+  input.error.sampling = SampleField(static_cast<float>(sigma));
+  input.error.amplitude = SampleField(static_cast<float>(variation / kZ95));
+  input.error.cell_sizes.assign(static_cast<std::size_t>(source.rows()), {std::abs(g[1]), std::abs(g[5])});
+  input.error.larger_side_m = std::abs(g[1]);
+  input.error.profile.half_spacing_m = std::abs(g[1]) / 2;
+  return std::make_shared<DemSurface>(std::move(input));
+}
+
+int run(int count, char** words) {
+  if (count < 6) {
+    std::fprintf(stderr,
+                 "bench_volume DEM (covers|bounds) (columns|faces) sigma voxel [variation [threads]]\n");
+    return 2;
+  }
+  const std::string what = words[2], how = words[3];
+  const double sigma = std::atof(words[4]), voxel = std::atof(words[5]),
+               variation = count > 6 ? std::atof(words[6]) : 0;
+  const auto source = open_dem(words[1]);
+  const std::shared_ptr<const Surface> surface = surface_of(*source, how == "faces", sigma, variation);
+  VolumeOptions options;
+  options.voxel_m = voxel;
+  options.threads = count > 7 ? std::atoi(words[7]) : 0;
+  Progress progress;
+  const double before = peak_mib();
+  const VolumeNeed need = estimate_need(*surface, options);
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  if (what == "covers") {
+    const CoverMasks covers = build_covers(*surface, 0.95, options, progress);
+    const double took = seconds();
+    std::printf(
+        "covers %-7s sigma %g voxel %g: %6.2f s, peak %6.0f MiB (+%.0f); masks %.0f MiB, %zu inner, %zu "
+        "outer\n",
+        how.c_str(), sigma, voxel, took, peak_mib(), peak_mib() - before,
+        static_cast<double>(covers.inner.bytes() + covers.outer.bytes()) / 1048576, covers.inner.count(),
+        covers.outer.count());
+    return 0;
+  }
+  const ErrorVolume volume = ErrorVolume::build(surface, options, progress);
+  const double took = seconds();
+  std::printf(
+      "bounds %-7s sigma %g voxel %g: %6.2f s, peak %6.0f MiB (+%.0f); volume %.0f MiB, estimated %.0f; %zu "
+      "voxels, estimated %.0f\n",
+      how.c_str(), sigma, voxel, took, peak_mib(), peak_mib() - before,
+      static_cast<double>(volume.report().bytes) / 1048576, static_cast<double>(need.bytes) / 1048576,
+      volume.report().voxels, need.voxels);
+  return 0;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  try {
+    return run(count, words);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
