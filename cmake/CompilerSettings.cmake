@@ -14,8 +14,9 @@ set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
-# -fno-math-errno changes no value; it lets loops with a square root run in vectors.
-add_compile_options(-ffp-contract=off -fno-math-errno -Wall -Wextra -Wshadow)
+# -fno-math-errno and -fno-trapping-math change no value, only the flags that nobody reads; with them loops with
+# square roots and conditions run in vectors.
+add_compile_options(-ffp-contract=off -fno-math-errno -fno-trapping-math -Wall -Wextra -Wshadow)
 if(SIGHTBOUND_WERROR)
   add_compile_options(-Werror)
 endif()

@@ -23,10 +23,6 @@ class SightLine::LeastRatio {
 
   double best() const { return best_; }
   bool done() const { return best_ <= least_; }
-  // Could anything with at most this sigma still matter?
-  bool matters(double, double clearance, double sigma_cap) const {
-    return clearance <= 0 || clearance < best_ * sigma_cap + kSlack;
-  }
   bool take(double, double clearance, double sigma) { return lower(clearance / sigma); }
   bool take_unknown() { return lower(0); }
   bool unknown_matters() const { return best_ > 0; }
@@ -52,10 +48,6 @@ class SightLine::NeededHeight {
 
   double best() const { return best_; }
   bool done() const { return best_ == kInfinity; }
-  bool matters(double t, double clearance, double sigma_cap) const {
-    const double wanted = k_ > 0 ? k_ * sigma_cap : 0;  // the cap may be infinite
-    return line_.target_height_ + (wanted - clearance) / t + kSlack > best_;
-  }
   bool take(double t, double clearance, double sigma) {
     // The place lacks k sigma - clearance; raising the target by 1 raises the line there by t.
     return raise(line_.target_height_ + (k_ * sigma - clearance) / t);

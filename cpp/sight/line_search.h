@@ -31,7 +31,10 @@ inline constexpr double kStraightEnough = 0.25;
 // there is rounding.
 inline constexpr double kAtEnd = 1e-4;
 inline constexpr int kScanLevel = MaxPyramid::kFinest + 4;  // its nodes hold kScan of the finest
-inline constexpr float kScanPad = 1e-3f;                    // cells
+inline constexpr int kStepLevel = 4;                        // ... and kScan steps
+inline constexpr int kFewSteps = 3 * kScan;                 // so few are bounded without looking at nodes
+inline constexpr double kScanPad = 1e-3;                    // cells
+inline constexpr int kNoStep = std::numeric_limits<int>::min();
 inline constexpr std::array kEndPlaces{1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2,
                                        3.0 / 4};  // larger cell sides from an end
 
@@ -70,17 +73,23 @@ class SightLine::Search {
   // First where lines are most often decided: right before the target, and where a neighbour's was.
   void within(std::span<const MajorRange> ranges, double hint) {
     const int target = line_.span_ > 0 ? last_ : first_, before = line_.span_ > 0 ? last_ - 1 : first_ + 1;
-    step(target);
-    if (!objective_.done() && before >= first_ && before <= last_) step(before);
+    judge_first(target);
+    if (!objective_.done() && before >= first_ && before <= last_) judge_first(before);
     if (objective_.done()) return;
     if (hint > 0 && hint < 1) {
       const int near = whole(line_.major0_ + hint * line_.span_) + line_.base_major_;
-      step(std::clamp(near, first_, last_));
+      judge_first(std::clamp(near, first_, last_));
     }
+    if (objective_.done()) return;
+    describe_line();
     for (const MajorRange& range : ranges) {
+      if (objective_.done()) return;
       from_ = std::max(range.from, first_);
       to_ = std::min(range.to - 1, last_);
-      if (from_ > to_) continue;
+      if (to_ - from_ < kFewSteps) {
+        steps(from_, to_);
+        continue;
+      }
       int level = std::min(kScanLevel, scene_.highest.coarsest());
       while (level < scene_.highest.coarsest() && (to_ >> level) - (from_ >> level) > 1) ++level;
       for (int node = from_ >> level; node <= to_ >> level && !objective_.done(); ++node) {
@@ -153,43 +162,119 @@ class SightLine::Search {
     return s.line_low - z >= ratio * sigma + kSlack;
   }
 
-  // Sixteen finest nodes at once, from `first` on. Holes need the nodes one by one.
-  bool can_scan() const { return !scene_.highest.any_hole() || scene_.see_across_nodata; }
-  void scan(int first) {
-    const Grid<float>& finest = scene_.highest.finest();
-    NodeScan s;
-    const std::size_t at =
-        static_cast<std::size_t>(first) * static_cast<std::size_t>(line_.transposed_ ? finest.cols() : 1);
-    s.highest = finest.data() + at;
-    s.widest = scene_.uniform ? nullptr : scene_.widest.finest().data() + at;
-    s.major_stride = line_.transposed_ ? finest.cols() : 1;
-    s.minor_stride = line_.transposed_ ? 1 : finest.cols();
-    s.minors = line_.minors_;
-    s.xi = static_cast<float>(xi_of(m_of(first << MaxPyramid::kFinest)));
-    s.xi_step = static_cast<float>((1 << MaxPyramid::kFinest) * per_span_);
+  // ---- sixteen at once
+  // -----------------------------------------------------------------------------------------------------
+
+  void describe_line() {
+    ScannedLine& s = scanned_;
     s.minor0 = static_cast<float>(line_.path_.chord(0) + line_.base_minor_);
     s.minor_span = static_cast<float>(line_.path_.chord(1) - line_.path_.chord(0));
     s.terms = line_.path_.bow().terms;
     for (std::size_t t = 0; t < s.bow.size(); ++t) s.bow[t] = static_cast<float>(line_.path_.bow().c[t]);
-    const double step = (1 << MaxPyramid::kFinest) * per_span_;
-    s.minor_pad =
-        static_cast<float>(bow_ * step * step / 8 + 4e-7 * (line_.minors_ + 4 * bow_size_)) + kScanPad;
-    s.share_pad = static_cast<float>(stretch_size_ + 1e-6);
-    s.rise = static_cast<float>(objective_.target_height() - line_.eye_height_);
     s.drop = static_cast<float>(line_.drop_);
     s.eye = static_cast<float>(line_.eye_height_);
-    s.height_pad = static_cast<float>(1e-3 + 1e-6 * (std::abs(s.rise) + s.drop + std::abs(s.eye) + 1e4));
-    s.rim = static_cast<float>(kRim / 2);
-    s.ratio = static_cast<float>(objective_.ratio());
+    s.share_pad = static_cast<float>(stretch_size_ + 1e-6);
+    s.minors = line_.minors_;
+    s.rim = static_cast<float>(kRim - float_pad());
     s.uniform = static_cast<float>(scene_.least_sigma);
     s.ends = static_cast<float>(ends_most());
     s.least_sigma = static_cast<float>(scene_.least_sigma);
     s.end_zone_sigma = static_cast<float>(kLeastSigma);
     s.end_zone_share = static_cast<float>(scene_.end_zone_m / line_.distance_ + 1e-6);
-    scan_nodes(s, matters_.data());
   }
+  // Heights change with the target's.
+  const ScannedLine& scanned() {
+    scanned_.rise = static_cast<float>(objective_.target_height() - line_.eye_height_);
+    scanned_.height_pad = static_cast<float>(
+        1e-3 + 1e-6 * (std::abs(scanned_.rise) + scanned_.drop + std::abs(scanned_.eye) + 1e4));
+    return scanned_;
+  }
+  // Cells that float arithmetic may have a minor coordinate wrong by.
+  double float_pad() const { return 4e-7 * (line_.minors_ + 4 * bow_size_) + kScanPad; }
+  double minor_pad(double xi_step) const { return bow_ * xi_step * xi_step / 8 + float_pad(); }
   double ends_most() const {
     return scene_.ends_move ? std::max(line_.eye_sampling_, line_.target_sampling_) : 0;
+  }
+
+  // Sixteen finest nodes, from `first` on. Holes need the nodes one by one.
+  bool can_scan() const { return !scene_.highest.any_hole() || scene_.see_across_nodata; }
+  void scan(int first) {
+    const Grid<float>& finest = scene_.highest.finest();
+    const double step = (1 << MaxPyramid::kFinest) * per_span_;
+    const std::size_t at =
+        static_cast<std::size_t>(first) * static_cast<std::size_t>(line_.transposed_ ? finest.cols() : 1);
+    NodeScan s;
+    s.highest = finest.data() + at;
+    s.widest = scene_.uniform ? nullptr : scene_.widest.finest().data() + at;
+    s.major_stride = line_.transposed_ ? finest.cols() : 1;
+    s.minor_stride = line_.transposed_ ? 1 : finest.cols();
+    s.xi = static_cast<float>(xi_of(m_of(first << MaxPyramid::kFinest)));
+    s.xi_step = static_cast<float>(step);
+    s.minor_pad = static_cast<float>(minor_pad(step));
+    s.ratio = static_cast<float>(objective_.ratio());
+    scan_nodes(scanned(), s, matters_.data());
+  }
+
+  // From the observer and from the target in turn.
+  void scan_end_places() {
+    PlaceScan s;
+    s.heights = scene_.heights.data();
+    s.major_stride = static_cast<int>(line_.major_stride_);
+    s.minor_stride = static_cast<int>(line_.minor_stride_);
+    s.majors = line_.majors_;
+    s.major0 = static_cast<float>(line_.major0_ + line_.base_major_);
+    s.major_span = static_cast<float>(line_.span_);
+    s.pad = static_cast<float>(float_pad() + 4e-7 * line_.majors_ + bow_size_ * 1e-6 +
+                               scanned_.share_pad * std::abs(line_.span_));
+    const double cell = scene_.error.larger_side_m / line_.distance_;
+    for (std::size_t i = 0; i < kEndPlaces.size(); ++i) {
+      s.shares[2 * i] = static_cast<float>(kEndPlaces[i] * cell);
+      s.shares[2 * i + 1] = static_cast<float>(1 - kEndPlaces[i] * cell);
+    }
+    const double ratio = objective_.ratio();
+    s.clearance = static_cast<float>(ratio * (ratio > 0 ? scene_.most_between() + ends_most() : kLeastSigma));
+    scan_places(scanned(), s, matters_.data());
+  }
+
+  // Steps [from, to], the most promising of sixteen first.
+  void steps(int from, int to) {
+    for (int first = from; first <= to && !objective_.done(); first += kScan) {
+      const int count = std::min(kScan, to - first + 1);
+      if (first > line_.majors_ - 2) {  // beyond the last column
+        step(first);
+        continue;
+      }
+      bound(first);
+      for (const int known : judged_) {
+        if (known >= first && known < first + count)
+          ratios_[static_cast<std::size_t>(known - first)] = kNoRatio;
+      }
+      while (!objective_.done()) {
+        const auto end = ratios_.begin() + count, best = std::min_element(ratios_.begin(), end);
+        if (static_cast<double>(*best) >= objective_.ratio()) break;
+        *best = kNoRatio;
+        step(first + static_cast<int>(best - ratios_.begin()));
+      }
+    }
+  }
+  void bound(int first) {
+    StepScan s;
+    s.heights = scene_.heights.data() + sample(first, 0);
+    s.major_stride = static_cast<int>(line_.major_stride_);
+    s.minor_stride = static_cast<int>(line_.minor_stride_);
+    s.steps = line_.majors_ - 1 - first;
+    if (!scene_.uniform) {
+      const Grid<float>& finest = scene_.widest.finest();
+      s.widest_major_stride = line_.transposed_ ? finest.cols() : 1;
+      s.widest_minor_stride = line_.transposed_ ? 1 : finest.cols();
+      s.widest =
+          finest.data() + static_cast<std::ptrdiff_t>(first >> MaxPyramid::kFinest) * s.widest_major_stride;
+    }
+    s.first = first;
+    s.xi = static_cast<float>(xi_of(m_of(first)));
+    s.xi_step = static_cast<float>(per_span_);
+    s.minor_pad = static_cast<float>(minor_pad(per_span_));
+    bound_steps(scanned(), s, ratios_.data());
   }
 
   bool excluded(int level, int node) {
@@ -205,55 +290,35 @@ class SightLine::Search {
       unknown = unknown || scene_.highest.has_hole(level, row, col);
     }
     if (unknown && !scene_.see_across_nodata && objective_.unknown_matters()) {
-      sigma_cap_ = kInfinity;
       return false;
     }
-    sigma_cap_ = (scene_.uniform ? scene_.least_sigma : static_cast<double>(sigma)) + ends_most();
-    return excludes(part, static_cast<double>(z), sigma_cap_);
+    const double most = (scene_.uniform ? scene_.least_sigma : static_cast<double>(sigma)) + ends_most();
+    return excludes(part, static_cast<double>(z), most);
   }
 
-  // The same for one step of the node just looked at, by the samples of the cells it crosses.
-  bool excluded_step(int s) const {
-    const Stretch part = stretch(std::max(low_, m_of(s)), std::min(high_, m_of(s + 1)));
-    if (is_outside(part.w_low) || is_outside(part.w_high) || s + 1 >= line_.majors_) return false;
-    const int from = cell_of(part.w_low), to = cell_of(part.w_high) + 1;
-    float z = std::numeric_limits<float>::lowest();
-    for (int j = from; j <= to; ++j) {
-      const float z_a = scene_.heights.data()[sample(s, j)], z_b = scene_.heights.data()[sample(s + 1, j)];
-      if (std::isnan(z_a) || std::isnan(z_b)) return false;
-      z = std::max({z, z_a, z_b});
-    }
-    return excludes(part, static_cast<double>(z), sigma_cap_);
-  }
-
-  // For the finest level to be called right after excluded() for the same node.
   void descend(int level, int node) {
     if (objective_.done()) return;
-    if (level == MaxPyramid::kFinest) {
-      const int from = std::max(from_, node << level), to = std::min(to_, ((node + 1) << level) - 1);
-      for (int s = from; s <= to && !objective_.done(); ++s) {
-        if (!excluded_step(s)) step(s);
-      }
-      sigma_cap_ = kInfinity;
+    if (level <= kStepLevel) {
+      steps(std::max(from_, node << level), std::min(to_, ((node + 1) << level) - 1));
       return;
     }
-    if (level == kScanLevel && can_scan()) {
-      const int nodes = scene_.highest.finest_nodes(line_.transposed_),
-                first = std::min(node * kScan, std::max(nodes - kScan, 0));
-      if (nodes >= kScan) {
-        scan(first);
-        const int from = from_ >> MaxPyramid::kFinest, to = to_ >> MaxPyramid::kFinest;
-        for (int i = 0; i < kScan && !objective_.done(); ++i) {
-          const int fine = line_.span_ > 0 ? first + kScan - 1 - i : first + i;
-          const bool mine =
-              fine >= std::max(from, node * kScan) && fine <= std::min(to, node * kScan + kScan - 1);
-          if (mine && matters_[static_cast<std::size_t>(fine - first)] != 0 &&
-              !excluded(MaxPyramid::kFinest, fine)) {
-            descend(MaxPyramid::kFinest, fine);
-          }
+    const int nodes = scene_.highest.finest_nodes(line_.transposed_);
+    if (level == kScanLevel && can_scan() && nodes >= kScan) {
+      const int first = std::min(node * kScan, nodes - kScan);
+      scan(first);
+      // Four nodes make sixteen steps.
+      for (int group = 0; group < kScan && !objective_.done(); group += 4) {
+        const int begin = line_.span_ > 0 ? kScan - 4 - group : group;
+        int low = begin, high = begin + 3;
+        while (low <= high && matters_[static_cast<std::size_t>(low)] == 0) ++low;
+        while (high >= low && matters_[static_cast<std::size_t>(high)] == 0) --high;
+        const int from = std::max({from_, node << level, (first + low) << MaxPyramid::kFinest});
+        if (low <= high) {
+          steps(from,
+                std::min({to_, ((node + 1) << level) - 1, ((first + high + 1) << MaxPyramid::kFinest) - 1}));
         }
-        return;
       }
+      return;
     }
     // The end nearer to the target first: on rising ground it decides more often.
     const int child = line_.span_ > 0 ? 2 * node + 1 : 2 * node;
@@ -271,18 +336,27 @@ class SightLine::Search {
     return line_.eye_height_ + t * (target - line_.eye_height_) - line_.drop_ * t * (1 - t);
   }
 
+  void judge_first(int s) {
+    for (int& known : judged_) {
+      if (known == s) return;
+      if (known != kNoStep) continue;
+      known = s;
+      return step(s);
+    }
+  }
   void step(int s) {
     step(s, [this](const Stencil& stencil, bool outside, double d, double xi) {
       judge(stencil, outside, d, xi);
     });
   }
   void end_places() {
-    for (const double f : kEndPlaces) {
-      const auto visit = [this](const Stencil& stencil, bool outside, double d, double xi) {
-        judge(stencil, outside, d, xi);
-      };
-      end_place(f, visit);
-      end_place(-f, visit);
+    const auto visit = [this](const Stencil& stencil, bool outside, double d, double xi) {
+      judge(stencil, outside, d, xi);
+    };
+    scan_end_places();
+    for (std::size_t i = 0; i < kEndPlaces.size(); ++i) {
+      if (matters_[2 * i] != 0) end_place(kEndPlaces[i], visit);
+      if (matters_[2 * i + 1] != 0) end_place(-kEndPlaces[i], visit);
     }
   }
 
@@ -410,7 +484,6 @@ class SightLine::Search {
       return;
     }
     const double clearance = height(t) - z;
-    if (!objective_.matters(t, clearance, sigma_cap_)) return;
     if (objective_.take(t, clearance, sigma(stencil, d, t) + moving_ends(t))) {
       critical_xi_ = xi;
       hole_ = false;
@@ -421,9 +494,11 @@ class SightLine::Search {
   const Scene& scene_;
   Objective objective_;
   double bow_, bow_size_, stretch_size_;
-  double sigma_cap_ = kInfinity;  // no sigma of the places at hand is larger
   bool curved_;
+  ScannedLine scanned_;
   std::array<std::int32_t, kScan> matters_{};
+  std::array<float, kScan> ratios_{};
+  std::array<int, 3> judged_{kNoStep, kNoStep, kNoStep};  // steps judged before all others
   double low_, high_, per_span_;
   double at_end_;          // share of the distance
   int first_, last_;       // steps of the line, in the scene's grid

@@ -19,6 +19,13 @@ double most_growth(const ErrorField& error) {
   return largest;
 }
 
+double most_amplitude(const SampleField& amplitude) {
+  if (amplitude.is_constant()) return amplitude.constant();
+  float most = 0;
+  for (const float a : amplitude.values().values()) most = a > most ? a : most;
+  return most;
+}
+
 double least_sampling(const SampleField& sampling) {
   if (sampling.is_constant()) return sampling.constant();
   float least = std::numeric_limits<float>::max();
@@ -44,7 +51,9 @@ Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const Sc
           heights_in.rows(), heights_in.cols(), [&](int r, float*) { return heights_in.row(r); }, workers,
           progress),
       least_sigma(std::max(least_sampling(error_in.sampling), kLeastSigma)),
-      largest_profile_(most_growth(error_in)) {
+      largest_profile_(most_growth(error_in)),
+      most_between_(
+          std::max(most_amplitude(error_in.amplitude) * largest_profile_ * (1 + 1e-6), kLeastSigma)) {
   if (uniform) return;
   widest = MaxPyramid(
       heights.rows(), heights.cols(),

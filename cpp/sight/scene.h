@@ -48,9 +48,11 @@ struct Scene {
   }
   double between_bound(int row, int col) const { return error.amplitude.at(row, col) * largest_profile_; }
   double largest_profile() const { return largest_profile_; }
+  // No sigma within the end zones is larger, but for what moving ends add.
+  double most_between() const { return most_between_; }
 
  private:
-  double largest_profile_ = 0;
+  double largest_profile_ = 0, most_between_ = 0;
 };
 
 }  // namespace sightbound

@@ -41,7 +41,8 @@ struct Stencil {
     return stencil;
   }
 
-  // With slivers that are NaN in `values` given to the sample that weighs most. False: a NaN weighs more than that.
+  // With slivers that are NaN in `values` given to the sample that weighs most. False: a NaN weighs more than
+  // that.
   bool give_up_slivers(const float* values) {
     std::size_t most = 0;
     for (std::size_t i = 1; i < 3; ++i) {

@@ -9,6 +9,12 @@
 #else
 #define SIGHTBOUND_VECTOR
 #endif
+// A part of such a function: compiled with it, not once for the plainest processor.
+#if defined(__GNUC__)
+#define SIGHTBOUND_INLINE inline __attribute__((always_inline))
+#else
+#define SIGHTBOUND_INLINE inline
+#endif
 
 namespace sightbound {
 

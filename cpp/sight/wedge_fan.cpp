@@ -17,8 +17,9 @@ namespace {
 constexpr int kBlocksPerUnit =
     16;  // blocks per unit of slope: enough tasks for many threads, enough wedges for vectors
 constexpr int kLeastWedges = kVector;  // per block
-constexpr double kWedgesPerCell = 1;   // at least so many wedges cross a cell side
-constexpr int kLeastPart = 16;         // columns an upper horizon stands for, at least
+constexpr double kWedgesPerCell =
+    1.0 / 3;  // at least so many wedges cross a cell side: more cost more than the cells they would prove
+constexpr int kLeastPart = 16;  // columns an upper horizon stands for, at least
 constexpr int kMostParts = 128;
 constexpr double kFirstBelow = 0.5;  // steps from the observer where the lower horizon begins
 constexpr double kFirstAbove = 2;    // ... and the upper one: nearer, a corner's slope says nothing
@@ -153,6 +154,9 @@ class WedgeFan::March {
   Linear edges(const ColumnPlace& p, int first) const {
     return {static_cast<float>(p.minor.a - first), static_cast<float>((p.minor.b - p.minor.a) / wedges_)};
   }
+
+  // Of one wedge, cells.
+  double width(const ColumnPlace& p) const { return (p.minor.b - p.minor.a) / wedges_; }
 
   // A frame may be wrong by `frame_pad_` cells.
   float largest_inverse(const ColumnPlace& p) const {
@@ -338,11 +342,15 @@ class WedgeFan::March {
     step.far = edges(here, column.first);
     step.pad = static_cast<float>(here.minor.bend() + frame_pad_) + kPositionPad;
     step.rows = column.rows;
+    step.window = window_for(width(here) + 2 * static_cast<double>(step.pad));
+    widened_.resize(static_cast<std::size_t>(column.rows + step.window + 2 * kVector));
+    std::copy_n(column.below.begin(), column.rows, widened_.begin());
+    widen_lowest(column.rows, step.window, widened_.data());
     step.drop_high = drop(here, true);
     step.eye_below = eye_below_;
     step.far_most = smallest_inverse(here);
     step.far_least = largest_inverse(here);
-    raise_below(step, column.below.data(), below_.data());
+    raise_below(step, column.below.data(), widened_.data(), below_.data());
   }
 
   // Parts are short near the observer, where an upper horizon is loose and should not speak for many columns.
@@ -368,15 +376,19 @@ class WedgeFan::March {
     }
     const int first = std::max(near_column.first, column.first);
     const int end = std::min(near_column.first + near_column.rows, column.first + column.rows);
-    cells_.resize(static_cast<std::size_t>(end - first + 2 * kVector));
-    highest_corners(end - first - 1, near_column.above.data() + (first - near_column.first),
-                    column.above.data() + (first - column.first), cells_.data());
     WedgeStep step;
     step.wedges = wedges_;
     step.near = edges(near, first);
     step.far = edges(here, first);
     step.pad = static_cast<float>(std::max(near.minor.bend(), here.minor.bend()) + frame_pad_) + kPositionPad;
     step.rows = end - first;
+    const double shift =
+        std::max(std::abs(here.minor.a - near.minor.a), std::abs(here.minor.b - near.minor.b));
+    step.window = window_for(std::max(width(near), width(here)) + shift + 2 * static_cast<double>(step.pad));
+    cells_.resize(static_cast<std::size_t>(end - first + step.window + 2 * kVector));
+    highest_corners(end - first - 1, near_column.above.data() + (first - near_column.first),
+                    column.above.data() + (first - column.first), cells_.data());
+    widen_highest(end - first - 1, step.window, cells_.data());
     step.drop_low = drop(near, false);
     step.eye_above = eye_above_;
     step.near_least = largest_inverse(near);
@@ -406,7 +418,7 @@ class WedgeFan::March {
   std::vector<Part> parts_;
   std::vector<float> below_;  // the lower horizon, one a wedge
   std::vector<MajorRange> ranges_;
-  std::vector<float> cells_, z_, sampling_, between_;  // scratch
+  std::vector<float> cells_, widened_, z_, sampling_, between_;  // scratch
   std::vector<std::int32_t> states_;
 };
 

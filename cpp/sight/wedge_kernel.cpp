@@ -48,14 +48,14 @@ void raise_above(const WedgeStep& s, const float* __restrict cells, float* __res
               far_step = s.far.step;
   const float pad = s.pad, drop_first = s.drop_low.first, drop_step = s.drop_low.step, eye = s.eye_above;
   const float rising = s.near_least, falling = s.far_most;
-  const int wedges = whole_vectors(s.wedges), last = s.rows - 2;
+  const int wedges = whole_vectors(s.wedges), last = s.rows - 2, window = s.window;
   for (int i = 0; i < wedges; ++i) {
     const float k = static_cast<float>(i), k1 = k + 1;
     const float low = smaller(near_first + k * near_step, far_first + k * far_step) - pad;
     const float high = larger(near_first + k1 * near_step, far_first + k1 * far_step) + pad;
     const int a = within(static_cast<int>(low), 0, last), b = within(static_cast<int>(high), 0, last);
-    const int middle = a + 1 < b ? a + 1 : b;
-    const float top = larger(larger(cells[a], cells[b]), cells[middle]);
+    const int end = b - window + 1 > a ? b - window + 1 : a, middle = a + window < end ? a + window : end;
+    const float top = larger(larger(cells[a], cells[end]), cells[middle]);
     const float over = top - (drop_first + k * drop_step) - eye;
     const float slope = over * (over > 0 ? rising : falling);
     above[i] = larger(above[i], slope);
@@ -63,18 +63,22 @@ void raise_above(const WedgeStep& s, const float* __restrict cells, float* __res
 }
 
 SIGHTBOUND_VECTOR
-void raise_below(const WedgeStep& s, const float* __restrict line, float* __restrict below) {
+void raise_below(const WedgeStep& s, const float* __restrict line, const float* __restrict lowest,
+                 float* __restrict below) {
   const float first = s.far.first, step = s.far.step, pad = s.pad;
   const float drop_first = s.drop_high.first, drop_step = s.drop_high.step, eye = s.eye_below;
   const float rising = s.far_most, falling = s.far_least;
-  const int wedges = whole_vectors(s.wedges), last = s.rows - 2;
+  const int wedges = whole_vectors(s.wedges), last = s.rows - 2, window = s.window;
   for (int i = 0; i < wedges; ++i) {
     const float k = static_cast<float>(i), k1 = k + 1;
     const float low = first + k * step - pad, high = first + k1 * step + pad;
     const int a = within(static_cast<int>(low), 0, last), b = within(static_cast<int>(high), 0, last);
     const float at_low = line[a] + (line[a + 1] - line[a]) * (low - static_cast<float>(a));
     const float at_high = line[b] + (line[b + 1] - line[b]) * (high - static_cast<float>(b));
-    const float inner = b > a ? smaller(line[a + 1], line[b]) : kUnbounded;
+    const int begin = a + 1, end = b - window + 1 > begin ? b - window + 1 : begin,
+              middle = begin + window < end ? begin + window : end;
+    const float within_wedge = smaller(smaller(lowest[begin], lowest[end]), lowest[middle]);
+    const float inner = b > a ? within_wedge : kUnbounded;
     const float bottom = smaller(smaller(at_low, at_high), inner);
     const float over = bottom - (drop_first + k * drop_step) - eye;
     const float slope = over * (over > 0 ? rising : falling);
@@ -87,6 +91,24 @@ void highest_corners(int count, const float* __restrict near, const float* __res
                      float* __restrict cells) {
   const int whole = whole_vectors(count);
   for (int j = 0; j < whole; ++j) cells[j] = larger(larger(near[j], near[j + 1]), larger(far[j], far[j + 1]));
+}
+
+SIGHTBOUND_VECTOR
+void widen_highest(int count, int window, float* values) {
+  const int whole = whole_vectors(count);
+  for (int j = count; j < whole + window; ++j) values[j] = values[count - 1];
+  for (int pass = 1; pass < window; ++pass) {
+    for (int j = 0; j < whole; ++j) values[j] = larger(values[j], values[j + 1]);
+  }
+}
+
+SIGHTBOUND_VECTOR
+void widen_lowest(int count, int window, float* values) {
+  const int whole = whole_vectors(count);
+  for (int j = count; j < whole + window; ++j) values[j] = values[count - 1];
+  for (int pass = 1; pass < window; ++pass) {
+    for (int j = 0; j < whole; ++j) values[j] = smaller(values[j], values[j + 1]);
+  }
 }
 
 WedgePair wedges_of(const TargetStep& s, int j) {

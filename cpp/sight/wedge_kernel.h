@@ -32,6 +32,7 @@ struct WedgeStep {
   Linear near, far;  // minor position of the wedge edges at both columns, from row 0 of the arrays
   float pad = 0;     // cells by which true edges may differ from those
   int rows = 0;      // entries of the arrays
+  int window = 1;    // neighbours that an entry of the widened array stands for
   Linear drop_low,
       drop_high;  // metres the curved ground lies lower: at least (near column), at most (far column)
   float eye_above = 0, eye_below = 0;                 // height of the eye for the upper and the lower bound
@@ -53,12 +54,19 @@ struct ColumnBounds {
 };
 void bound_column(const ColumnBounds&, const float* z, float* above, float* below);
 
+// A wedge is looked up in three windows of neighbouring entries: its first, its last and the one between.
+// That covers a span (cells, pads included) when
+constexpr int window_for(double span) { return (static_cast<int>(span) + 4) / 3; }
+
 // above[i] = max(above[i], slope of the highest cell the wedge touches between the two columns). cells[j] is
-// an upper bound of z + K sigma over the cell from row j to j + 1.
+// an upper bound of z + K sigma over the cells from row j to j + window.
 void raise_above(const WedgeStep&, const float* cells, float* above);
 // below[i] = max(below[i], slope of the lowest place of the far column within the wedge). line[j] is z - K
-// sigma at row j, linear between.
-void raise_below(const WedgeStep&, const float* line, float* below);
+// sigma at row j, linear between; lowest[j] the smallest of line[j ... j + window - 1].
+void raise_below(const WedgeStep&, const float* line, const float* lowest, float* below);
+// values[j] = largest (smallest) of values[j ... j + window - 1], as far as there are `count`.
+void widen_highest(int count, int window, float* values);
+void widen_lowest(int count, int window, float* values);
 // cells[j] = largest of the four corners (j, j + 1 of both columns): the arrays are one longer than whole
 // vectors.
 void highest_corners(int count, const float* near, const float* far, float* cells);

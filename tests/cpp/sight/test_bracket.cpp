@@ -4,6 +4,7 @@
 #include <limits>
 #include <random>
 #include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -37,6 +38,26 @@ Ground rough_ground(int rows, int cols, float sigma, bool holes) {
   return ground;
 }
 
+// Error in patches, some ten times that of others: a search that takes one place's sigma for another's is
+// found out.
+void vary_error(Ground& ground) {
+  constexpr int kPatch = 9;
+  std::mt19937 random(12);
+  std::exponential_distribution<float> peaked(2);
+  const int rows = ground.heights.rows(), cols = ground.heights.cols();
+  Grid<float> patches(rows / kPatch + 1, cols / kPatch + 1), sampling(rows, cols), amplitude(rows, cols);
+  for (float& p : patches.values()) p = peaked(random);
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < cols; ++c) {
+      amplitude.at(r, c) = patches.at(r / kPatch, c / kPatch);
+      sampling.at(r, c) = 0.02f + 0.1f * amplitude.at(r, c);
+    }
+  }
+  ground.error.sampling = SampleField(std::move(sampling));
+  ground.error.amplitude = SampleField(std::move(amplitude));
+  ground.error.profile = {GeologicShape::kGrowth, 0, 0.7, 5};
+}
+
 // k* from every judged place, none skipped.
 double by_every_place(const Scene& scene, const SightLine& line) {
   double k = scene.largest_ratio;
@@ -50,21 +71,23 @@ struct Case {
   float sigma;
   double col, row;  // of the observer
   bool holes;
+  bool varied = false;  // the error differs from sample to sample, and grows between them
+  int rows = 70, cols = 90;
 };
 
 class Bracket : public testing::TestWithParam<Case> {};
 
 TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once) {
   const Case& test = GetParam();
-  constexpr int kRows = 70, kCols = 90;
-  const Ground ground = rough_ground(kRows, kCols, test.sigma, test.holes);
+  Ground ground = rough_ground(test.rows, test.cols, test.sigma, test.holes);
+  if (test.varied) vary_error(ground);
   const Workers workers(2);
   Progress progress;
   const Scene scene(ground.heights, ground.error, {}, workers, progress);
   const int base_col = static_cast<int>(test.col), base_row = static_cast<int>(test.row);
   const Georeference plane{Geotransform({0, 10, 0, 0, 0, -10})};
   const ObserverFrame frame(plane, test.col - base_col, test.row - base_row,
-                            {-base_col, -base_row, kCols, kRows});
+                            {-base_col, -base_row, test.cols, test.rows});
   Eye eye;
   eye.frame = &frame;
   eye.base_col = base_col;
@@ -102,7 +125,7 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
     });
   }
   const bool on_sample = test.col == base_col && test.row == base_row;
-  EXPECT_EQ(visited.size(), static_cast<std::size_t>(kRows * kCols - (on_sample ? 1 : 0)));
+  EXPECT_EQ(visited.size(), static_cast<std::size_t>(test.rows * test.cols - (on_sample ? 1 : 0)));
   EXPECT_GT(hidden, 100);
   EXPECT_GT(open, 100);
   EXPECT_GT(cleared, 10);
@@ -111,7 +134,9 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
 INSTANTIATE_TEST_SUITE_P(Places, Bracket,
                          testing::Values(Case{0.5f, 40, 30, false}, Case{0.05f, 40.3, 30.7, false},
                                          Case{0.5f, 0, 0, false}, Case{0.5f, 89, 69, false},
-                                         Case{0.2f, 17.5, 68.9, true}, Case{2.0f, 40, 30, true}));
+                                         Case{0.2f, 17.5, 68.9, true}, Case{2.0f, 40, 30, true},
+                                         Case{0, 130.4, 20.2, false, true, 260, 300},
+                                         Case{0, 40, 30, true, true}));
 
 }  // namespace
 }  // namespace sightbound

@@ -93,14 +93,22 @@ TEST(Kernels, give_the_same_bits_with_and_without_vectors) {
       plain::sightbound::highest_corners(rows - 1, above.data(), below.data(), plain_cells.data());
       expect_same_bits(cells, plain_cells);
 
-      const WedgeStep step = some_step(random, wedges, rows);
+      WedgeStep step = some_step(random, wedges, rows);
+      step.window = 1 + rows % 3;
+      std::vector<float> lowest = below, plain_lowest = below;
+      widen_highest(rows - 1, step.window, cells.data());
+      plain::sightbound::widen_highest(rows - 1, step.window, plain_cells.data());
+      expect_same_bits(cells, plain_cells);
+      widen_lowest(rows, step.window, lowest.data());
+      plain::sightbound::widen_lowest(rows, step.window, plain_lowest.data());
+      expect_same_bits(lowest, plain_lowest);
       std::vector<float> horizon = random.values(static_cast<std::size_t>(wedges), -1, 1),
                          plain_horizon = horizon;
       raise_above(step, cells.data(), horizon.data());
       plain::sightbound::raise_above(step, cells.data(), plain_horizon.data());
       expect_same_bits(horizon, plain_horizon);
-      raise_below(step, below.data(), horizon.data());
-      plain::sightbound::raise_below(step, below.data(), plain_horizon.data());
+      raise_below(step, below.data(), lowest.data(), horizon.data());
+      plain::sightbound::raise_below(step, below.data(), lowest.data(), plain_horizon.data());
       expect_same_bits(horizon, plain_horizon);
 
       TargetStep targets;
@@ -121,6 +129,73 @@ TEST(Kernels, give_the_same_bits_with_and_without_vectors) {
   }
 }
 
+TEST(Kernels, widen_by_the_neighbours_there_are) {
+  std::vector<float> highest(8 + 2 * kVector, -1), lowest(8 + 2 * kVector, -1);
+  const std::vector<float> values{3, 1, 4, 1, 5, 9, 2, 6};
+  std::copy(values.begin(), values.end(), highest.begin());
+  std::copy(values.begin(), values.end(), lowest.begin());
+  widen_highest(8, 3, highest.data());
+  widen_lowest(8, 3, lowest.data());
+  highest.resize(8);
+  lowest.resize(8);
+  EXPECT_EQ(highest, (std::vector<float>{4, 4, 5, 9, 9, 9, 6, 6}));
+  EXPECT_EQ(lowest, (std::vector<float>{1, 1, 1, 1, 2, 2, 2, 6}));
+}
+
+// Three windows hold every entry of a span, wherever it begins.
+TEST(Kernels, look_a_whole_wedge_up) {
+  for (double span = 0.1; span < 12; span += 0.1) {
+    for (double low = 5; low < 6; low += 0.01) {
+      const int touched = static_cast<int>(low + span) - static_cast<int>(low) + 1;
+      EXPECT_LE(touched, 3 * window_for(span)) << span << " from " << low;
+    }
+  }
+}
+
+// A wedge of several cells: its horizons are those of the highest and the lowest of them all, wherever it
+// stands.
+TEST(Kernels, raise_by_every_cell_of_a_wide_wedge) {
+  constexpr int kRows = 24;
+  for (int odd = 5; odd <= 10; ++odd) {
+    WedgeStep step;
+    step.wedges = 1;
+    step.near = step.far = {4.25f, 6.5f};  // cells 4 to 10
+    step.rows = kRows;
+    step.window = window_for(6.5 + 2e-3);
+    step.pad = 1e-3f;
+    step.near_least = step.far_most = step.far_least = 1;
+    std::vector<float> cells(kRows + 2 * kVector, 10), line(kRows + 2 * kVector, 10);
+    cells[static_cast<std::size_t>(odd)] = 70;
+    line[static_cast<std::size_t>(odd)] = 2;
+    std::vector<float> lowest = line, above(kVector, -kUnbounded), below(kVector, -kUnbounded);
+    widen_highest(kRows - 1, step.window, cells.data());
+    widen_lowest(kRows, step.window, lowest.data());
+    raise_above(step, cells.data(), above.data());
+    raise_below(step, line.data(), lowest.data(), below.data());
+    EXPECT_EQ(above[0], 70) << odd;
+    EXPECT_EQ(below[0], 2) << odd;
+  }
+}
+
+ScannedLine some_line(Random& random, int round, int minors) {
+  ScannedLine line;
+  line.minor0 = random.between(-2, 0.8f * static_cast<float>(minors));
+  line.minor_span = random.between(-100, 100);
+  line.terms = round % 3;
+  line.bow = {random.between(-1, 1), random.between(-1, 1)};
+  line.rise = random.between(-50, 150);
+  line.drop = random.between(0, 20);
+  line.eye = random.between(0, 100);
+  line.share_pad = 1e-5f;
+  line.height_pad = 0.01f;
+  line.minors = minors;
+  line.rim = 0.005f;
+  line.uniform = line.least_sigma = 1;
+  line.end_zone_sigma = 0.001f;
+  line.end_zone_share = 0.15f;
+  return line;
+}
+
 TEST(Kernels, scan_nodes_alike_with_and_without_vectors) {
   Random random;
   constexpr int kNodes = 64;
@@ -128,37 +203,72 @@ TEST(Kernels, scan_nodes_alike_with_and_without_vectors) {
                            widest = random.values(kNodes * kNodes, 0, 3);
   int searched = 0;
   for (int round = 0; round < 200; ++round) {
+    const ScannedLine line = some_line(random, round, kNodes * 4);
     NodeScan scan;
     scan.highest = highest.data() + kScan;
     scan.widest = round % 2 ? widest.data() + kScan : nullptr;
     scan.major_stride = 1;
     scan.minor_stride = kNodes;
-    scan.minors = kNodes * 4;
     scan.xi = 0.1f;
     scan.xi_step = 0.02f;
-    scan.minor0 = random.between(-2, 200);
-    scan.minor_span = random.between(-100, 100);
-    scan.terms = round % 3;
-    scan.bow = {random.between(-1, 1), random.between(-1, 1)};
-    scan.rise = random.between(-50, 150);
-    scan.drop = random.between(0, 20);
-    scan.eye = random.between(0, 100);
     scan.minor_pad = 0.01f;
-    scan.share_pad = 1e-5f;
-    scan.height_pad = 0.01f;
-    scan.rim = 0.005f;
     scan.ratio = random.between(-3, 3);
-    scan.uniform = scan.least_sigma = 1;
-    scan.end_zone_sigma = 0.001f;
-    scan.end_zone_share = 0.15f;
     std::vector<std::int32_t> matters(kScan), plain_matters(kScan);
-    scan_nodes(scan, matters.data());
-    plain::sightbound::scan_nodes(scan, plain_matters.data());
+    scan_nodes(line, scan, matters.data());
+    plain::sightbound::scan_nodes(line, scan, plain_matters.data());
     expect_same_bits(matters, plain_matters);
     for (const std::int32_t m : matters) searched += m;
   }
   EXPECT_GT(searched, 100);  // the case is not an empty one
   EXPECT_LT(searched, 200 * kScan - 100);
+}
+
+TEST(Kernels, bound_steps_and_places_alike_with_and_without_vectors) {
+  Random random;
+  constexpr int kSamples = 128;
+  std::vector<float> heights = random.values(kSamples * kSamples, 0, 100);
+  heights[500] = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> widest = random.values(kSamples * kSamples / 16, 0.5f, 3);
+  int said = 0, judged = 0;
+  for (int round = 0; round < 200; ++round) {
+    const ScannedLine line = some_line(random, round, kSamples);
+    StepScan steps;
+    steps.heights = heights.data() + 9;
+    steps.widest = round % 2 ? widest.data() + 2 : nullptr;
+    steps.major_stride = 1;
+    steps.minor_stride = kSamples;
+    steps.widest_major_stride = 1;
+    steps.widest_minor_stride = kSamples / 4;
+    steps.first = 9;
+    steps.steps = round % 5 ? 100 : 3;
+    steps.xi = 0.1f;
+    steps.xi_step = 0.01f;
+    steps.minor_pad = 0.003f;
+    std::vector<float> ratios(kScan), plain_ratios(kScan);
+    bound_steps(line, steps, ratios.data());
+    plain::sightbound::bound_steps(line, steps, plain_ratios.data());
+    expect_same_bits(ratios, plain_ratios);
+    for (const float ratio : ratios) said += ratio > -kNoRatio;
+
+    PlaceScan places;
+    places.heights = heights.data();
+    places.major_stride = 1;
+    places.minor_stride = kSamples;
+    places.majors = kSamples;
+    places.major0 = 20;
+    places.major_span = 60;
+    places.pad = 0.01f;
+    for (std::size_t i = 0; i < places.shares.size(); ++i) places.shares[i] = random.between(0, 1);
+    places.clearance = random.between(-3, 3);
+    std::vector<std::int32_t> matters(kScan), plain_matters(kScan);
+    scan_places(line, places, matters.data());
+    plain::sightbound::scan_places(line, places, plain_matters.data());
+    expect_same_bits(matters, plain_matters);
+    for (const std::int32_t m : matters) judged += m;
+  }
+  EXPECT_GT(said, 500);
+  EXPECT_GT(judged, 100);
+  EXPECT_LT(judged, 200 * kScan - 100);
 }
 
 }  // namespace
