@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "volume/column_corners.h"
 #include "volume/column_faces.h"
 #include "volume/column_overlay.h"
 #include "volume/vdb_block.h"
@@ -21,18 +22,64 @@ constexpr std::size_t kColumns = 64;  // of a leaf: number 8 (i & 7) + (j & 7), 
 // A column is known when faces cover all but this share of it (rounding, and gaps that TINs have by theirs).
 constexpr double kUncovered = 1e-6;
 
-// Calls f(column, overlay) for every face over each of the 8 x 8 columns from (8 i8, 8 j8).
-template <class F>
-void for_each_overlay(const Surface& surface, const ColumnFaces::Block& block, const ColumnFaces& faces,
-                      int i8, int j8, std::vector<std::uint32_t>& numbers, const F& f) {
-  const double voxel = faces.voxel_m();
-  block.near(i8, j8, numbers);
-  Overlay overlay;
-  for (const std::uint32_t number : numbers) {
-    const std::optional<SurfaceFace> found = surface.face(number);
-    if (!found) continue;
-    const FaceInPlan face(*found, surface.profile());
-    const auto first = [&](double place, int from) {  // one more on each side: touching columns count
+// The faces over 8 x 8 columns, and what they say of them.
+class LeafColumns {
+ public:
+  LeafColumns(const Surface& surface, const ColumnFaces& faces, const ColumnFaces::Block& block)
+      : surface_(surface), faces_(faces), block_(block) {}
+
+  // For the corners of all overlays of faces with the columns [8 i8, 8 i8 + 8) x [8 j8, 8 j8 + 8): calls
+  // f(column, corner), and f(lattice) for those on lattice points where these come together.
+  template <class F>
+  void visit(int i8, int j8, F& f) {
+    block_.near(i8, j8, numbers_);
+    ready_.clear();
+    bool plain = true;
+    for (const std::uint32_t number : numbers_) {
+      const std::optional<SurfaceFace> face = surface_.face(number);
+      if (!face) continue;
+      ready_.emplace_back(*face, surface_.profile());
+      plain = plain && ready_.back().is_plain();
+    }
+    f.clear();
+    if (plain && covered(i8, j8)) {
+      lattice_.clear();
+      const ColumnCorners corners(faces_.voxel_m(), 8 * i8, 8 * j8, lattice_);
+      for (const FaceInPlan& face : ready_) corners.visit(face, f);
+      if (lattice_.complete()) {
+        f(lattice_);
+        area_.fill(faces_.voxel_m() * faces_.voxel_m());
+        return;
+      }
+      f.clear();
+    }
+    area_.fill(0);
+    for (const FaceInPlan& face : ready_) cut(face, i8, j8, f);
+  }
+
+  // Of the last visit: is the column covered by faces?
+  bool is_known(std::size_t column) const {
+    return area_[column] >= (1 - kUncovered) * faces_.voxel_m() * faces_.voxel_m();
+  }
+  std::uint64_t unknown() const {
+    std::uint64_t bits = 0;
+    for (std::size_t c = 0; c < kColumns; ++c) bits |= std::uint64_t{!is_known(c)} << c;
+    return bits;
+  }
+
+ private:
+  bool covered(int i8, int j8) const {
+    const double side = 8 * faces_.voxel_m();
+    double area = 0;
+    for (const FaceInPlan& face : ready_)
+      area += face.area_over(i8 * side, j8 * side, (i8 + 1) * side, (j8 + 1) * side);
+    return area >= side * side * (1 - kUncovered / kColumns);
+  }
+
+  template <class F>
+  void cut(const FaceInPlan& face, int i8, int j8, F& f) {
+    const double voxel = faces_.voxel_m();
+    const auto first = [&](double place, int from) {  // touching columns count
       return std::clamp(static_cast<int>(std::floor(place / voxel - kDistanceSlack)) - from, 0, 8);
     };
     const auto last = [&](double place, int from) {
@@ -40,31 +87,37 @@ void for_each_overlay(const Surface& surface, const ColumnFaces::Block& block, c
     };
     const int i0 = first(face.x0(), 8 * i8), i1 = last(face.x1(), 8 * i8);
     const int j0 = first(face.y0(), 8 * j8), j1 = last(face.y1(), 8 * j8);
+    Overlay overlay;
     for (int i = i0; i <= i1; ++i) {
       for (int j = j0; j <= j1; ++j) {
         face.over((8 * i8 + i) * voxel, (8 * j8 + j) * voxel, (8 * i8 + i + 1) * voxel,
                   (8 * j8 + j + 1) * voxel, overlay);
-        if (overlay.count > 0) f(static_cast<std::size_t>(8 * i + j), overlay);
+        const auto column = static_cast<std::size_t>(8 * i + j);
+        if (overlay.count > 0) area_[column] += overlay.area;
+        for (std::size_t c = 0; c < overlay.count; ++c) f(column, overlay.corners[c]);
       }
     }
   }
-}
+
+  const Surface& surface_;
+  const ColumnFaces& faces_;
+  const ColumnFaces::Block& block_;
+  std::vector<std::uint32_t> numbers_;
+  std::vector<FaceInPlan> ready_;
+  LatticePoints lattice_;
+  std::array<double, kColumns> area_{};
+};
 
 // Where |k| <= ratio: the reach of the terrain's volume over a column.
 struct Reach {
   double bottom = kInfinity, top = -kInfinity;              // touched by it
   double inner_bottom = -kInfinity, inner_top = kInfinity;  // wholly in it, whatever the place
-  double area = 0;
 
-  void add(const Overlay& overlay, double ratio) {
-    for (std::size_t c = 0; c < overlay.count; ++c) {
-      const OverlayCorner& corner = overlay.corners[c];
-      bottom = std::min(bottom, corner.height - ratio * corner.sigma_high);
-      top = std::max(top, corner.height + ratio * corner.sigma_high);
-      inner_bottom = std::max(inner_bottom, corner.height - ratio * corner.sigma_low);
-      inner_top = std::min(inner_top, corner.height + ratio * corner.sigma_low);
-    }
-    area += overlay.area;
+  void add(const OverlayCorner& corner, double ratio) {
+    bottom = std::min(bottom, corner.height - ratio * corner.sigma_high);
+    top = std::max(top, corner.height + ratio * corner.sigma_high);
+    inner_bottom = std::max(inner_bottom, corner.height - ratio * corner.sigma_low);
+    inner_top = std::min(inner_top, corner.height + ratio * corner.sigma_low);
   }
   bool any() const { return bottom <= top; }
   // Voxels [first, last] that touch it, and that lie wholly in it.
@@ -76,6 +129,36 @@ struct Reach {
     return {static_cast<int>(std::ceil((inner_bottom + kHeightSlack) / height)),
             static_cast<int>(std::floor((inner_top - kHeightSlack) / height)) - 1};
   }
+};
+
+// The reach of each of 64 columns.
+struct LeafReach {
+  explicit LeafReach(double quantile) : ratio(quantile) {}
+
+  void clear() { of.fill({}); }
+  void operator()(std::size_t column, const OverlayCorner& corner) { of[column].add(corner, ratio); }
+  void operator()(const LatticePoints& lattice) {
+    std::array<double, 81> low, high;
+    for (std::size_t n = 0; n < 81; ++n) {
+      low[n] = lattice.height[n] - ratio * lattice.sigma[n];
+      high[n] = lattice.height[n] + ratio * lattice.sigma[n];
+    }
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      const std::size_t n = 9 * (c / 8) + c % 8;
+      Reach& reach = of[c];
+      reach.bottom =
+          std::min(reach.bottom, std::min(std::min(low[n], low[n + 1]), std::min(low[n + 9], low[n + 10])));
+      reach.inner_bottom = std::max(
+          reach.inner_bottom, std::max(std::max(low[n], low[n + 1]), std::max(low[n + 9], low[n + 10])));
+      reach.top =
+          std::max(reach.top, std::max(std::max(high[n], high[n + 1]), std::max(high[n + 9], high[n + 10])));
+      reach.inner_top = std::min(
+          reach.inner_top, std::min(std::min(high[n], high[n + 1]), std::min(high[n + 9], high[n + 10])));
+    }
+  }
+
+  double ratio;
+  std::array<Reach, kColumns> of;
 };
 
 // Bits of the leaf rows k in [first, last] of a column, in the leaf that begins at k0.
@@ -162,17 +245,17 @@ class RatioFiller {
     reach_.fill({});
     for (auto& corners : corners_) corners.clear();
   }
-  void add(std::size_t column, const Overlay& overlay) {
-    reach_[column].add(overlay, ratio_);
-    corners_[column].insert(corners_[column].end(), overlay.corners.begin(),
-                            overlay.corners.begin() + static_cast<std::ptrdiff_t>(overlay.count));
+  void operator()(std::size_t column, const OverlayCorner& corner) {
+    reach_[column].add(corner, ratio_);
+    corners_[column].push_back(corner);
   }
-  std::uint64_t unknown(double least_area) const {
-    std::uint64_t bits = 0;
+  void operator()(const LatticePoints& lattice) {
     for (std::size_t c = 0; c < kColumns; ++c) {
-      if (reach_[c].area < least_area) bits |= std::uint64_t{1} << c;
+      for (const std::size_t n : {9 * (c / 8) + c % 8, 9 * (c / 8) + c % 8 + 1, 9 * (c / 8) + c % 8 + 9,
+                                  9 * (c / 8) + c % 8 + 10}) {
+        (*this)(c, {lattice.height[n], lattice.sigma[n], lattice.sigma[n]});
+      }
     }
-    return bits;
   }
 
   // Adds the leaves of the band; returns the k / 8 of the lowest, or INT_MAX when there is none.
@@ -240,16 +323,14 @@ PlanMask fill_ratios(const Surface& surface, const VoxelSize& size, double large
     const ColumnFaces::Block block(faces, a, b);
     stacks[n] = NodeStack<RatioTree>(a, b, outside);
     RatioFiller filler(size, largest_ratio);
-    std::vector<std::uint32_t> numbers;
+    LeafColumns columns(surface, faces, block);
     std::array<int, 256> first;
     for (int square = 0; square < 256; ++square) {
       const int i8 = 16 * a + square / 16, j8 = 16 * b + square % 16;
       first[static_cast<std::size_t>(square)] = std::numeric_limits<int>::max();
       if (8 * i8 >= faces.cols() || 8 * j8 >= faces.rows()) continue;
-      filler.clear();
-      for_each_overlay(surface, block, faces, i8, j8, numbers,
-                       [&](std::size_t column, const Overlay& overlay) { filler.add(column, overlay); });
-      unknown.set_8(i8, j8, filler.unknown((1 - kUncovered) * size.side * size.side));
+      columns.visit(i8, j8, filler);
+      unknown.set_8(i8, j8, columns.unknown());
       first[static_cast<std::size_t>(square)] = filler.fill(i8, j8, stacks[n]);
     }
     if (!stacks[n].nodes().empty()) lowest[n] = stacks[n].nodes().begin()->first;
@@ -299,20 +380,16 @@ void fill_covers(const Surface& surface, const VoxelSize& size, double quantile,
     const ColumnFaces::Block block(faces, a, b);
     inner_stacks[n] = NodeStack<BitTree>(a, b, false);
     outer_stacks[n] = NodeStack<BitTree>(a, b, false);
-    std::vector<std::uint32_t> numbers;
-    std::array<Reach, kColumns> reach;
+    LeafColumns columns(surface, faces, block);
+    LeafReach reach(quantile);
     std::array<std::array<int, 2>, kColumns> held, touched;
     for (int square = 0; square < 256; ++square) {
       const int i8 = 16 * a + square / 16, j8 = 16 * b + square % 16;
       if (8 * i8 >= faces.cols() || 8 * j8 >= faces.rows()) continue;
-      reach.fill({});
-      for_each_overlay(
-          surface, block, faces, i8, j8, numbers,
-          [&](std::size_t column, const Overlay& overlay) { reach[column].add(overlay, quantile); });
-      const double whole = (1 - kUncovered) * size.side * size.side;
+      columns.visit(i8, j8, reach);
       for (std::size_t c = 0; c < kColumns; ++c) {
-        touched[c] = reach[c].any() ? reach[c].touched(size.height) : kNothing;
-        held[c] = reach[c].any() && reach[c].area >= whole ? reach[c].held(size.height) : kNothing;
+        touched[c] = reach.of[c].any() ? reach.of[c].touched(size.height) : kNothing;
+        held[c] = reach.of[c].any() && columns.is_known(c) ? reach.of[c].held(size.height) : kNothing;
       }
       add_columns(held, i8, j8, inner_stacks[n]);
       add_columns(touched, i8, j8, outer_stacks[n]);

@@ -82,6 +82,29 @@ class FaceInPlan {
   double lowest() const { return height_.low; }
   double highest() const { return height_.high; }
 
+  // For ColumnCorners.
+  const Xyz& corner(std::size_t c) const { return face_.corner[c]; }
+  double sampling(std::size_t c) const { return face_.sampling[c]; }
+  // Is sigma linear: no error between the samples, all or nothing above the floor?
+  bool is_plain() const {
+    return amplitude_.high <= 0 && (sampling_.low >= kLeastSigma || sampling_.high <= kLeastSigma);
+  }
+  bool contains(double x, double y) const {
+    for (const Edge& e : edge_) {
+      if (e.at_zero + e.x * x + e.y * y < 0) return false;
+    }
+    return true;
+  }
+  OverlayCorner at(double x, double y) const {
+    const double sigma = std::max(value(sampling_, x, y), kLeastSigma);
+    return {value(height_, x, y), sigma, sigma};
+  }
+  // Area of the part over a rectangle.
+  double area_over(double x0, double y0, double x1, double y1) const {
+    Polygon polygon;
+    return clip(x0, y0, x1, y1, polygon) ? polygon.area : 0;
+  }
+
   // The part over the column [x0, x1] x [y0, y1], edges included; count = 0: none.
   void over(double x0, double y0, double x1, double y1, Overlay& overlay) const {
     Polygon polygon;
