@@ -16,6 +16,7 @@ void bind_error_model(py::module_& m);
 void bind_viewshed(py::module_& m);
 void bind_line_of_sight(py::module_& m);
 void bind_error_surfaces(py::module_& m);
+void bind_tin(py::module_& m);
 void bind_defaults(py::module_& m);
 
 }  // namespace sightbound::python

@@ -18,6 +18,7 @@ from .error_estimate import estimate_error
 from .error_model import ErrorModel, terrain_table
 from .error_surfaces import ErrorSurfaces, error_surfaces
 from .line_of_sight import LineOfSight, line_of_sight, lines_of_sight
+from .tin import Tin, read_tin, tin_layers
 from .viewshed import viewshed, viewsheds
 from .viewshed_result import ViewshedResult
 
@@ -37,6 +38,7 @@ __all__ = [
     "ErrorModel",
     "ErrorSurfaces",
     "LineOfSight",
+    "Tin",
     "ViewshedResult",
     "defaults",
     "error_surfaces",
@@ -45,7 +47,9 @@ __all__ = [
     "line_of_sight",
     "lines_of_sight",
     "read_dem",
+    "read_tin",
     "terrain_table",
+    "tin_layers",
     "viewshed",
     "viewsheds",
 ]

@@ -66,6 +66,12 @@ std::string choose_crs(TinSource& source, const TinReadOptions& options, const s
 bool is_foot(double metres) { return metres > 0.3 && metres < 0.31; }
 bool same(double a, double b) { return std::abs(a - b) <= 1e-9 * std::abs(a); }
 
+// Heights are metres here: the CRS must not say otherwise.
+std::string with_heights_in_metres(const std::string& crs_wkt) {
+  const CrsUnits units = crs_units(crs_wkt);
+  return units.vertical_m && !same(*units.vertical_m, 1) ? horizontal_crs(crs_wkt) : crs_wkt;
+}
+
 Placement place(TinSource& source, const TinReadOptions& options, const std::string& what) {
   Placement placement;
   placement.crs_wkt = choose_crs(source, options, what, placement);
@@ -93,8 +99,7 @@ Placement place(TinSource& source, const TinReadOptions& options, const std::str
     placement.height = scale.metres_per_unit;
     for (std::string& note : scale.notes) placement.notes.push_back(std::move(note));
   }
-  // Heights are metres from here on: the CRS must not say otherwise.
-  if (units.vertical_m && !same(*units.vertical_m, 1)) placement.crs_wkt = horizontal_crs(placement.crs_wkt);
+  placement.crs_wkt = with_heights_in_metres(placement.crs_wkt);
   return placement;
 }
 
@@ -129,6 +134,24 @@ void triangulate_survey(TinSource& source, double longest_edge, Progress& progre
 
 }  // namespace
 
+void TinSource::add_survey(std::vector<Xyz> points, const std::vector<std::vector<Xyz>>& breaklines) {
+  const std::size_t given = points.size();
+  survey.points = std::move(points);
+  for (const auto& line : breaklines) {
+    survey.breaklines.emplace_back();
+    for (const Xyz& corner : line) {
+      survey.breaklines.back().push_back(static_cast<std::int32_t>(survey.points.size()));
+      survey.points.push_back(corner);
+    }
+  }
+  // Lists of wrong length keep it, for the complaint.
+  const auto lengthen = [&](std::vector<float>& values) {
+    if (values.size() == given) values.resize(survey.points.size(), std::nanf(""));
+  };
+  if (!tin.sigma_v.empty()) lengthen(tin.sigma_v);
+  for (TinAttribute& one : tin.vertex_attributes) lengthen(one.values);
+}
+
 Tin make_tin(TinSource source, const TinReadOptions& options, const std::string& what, Progress& progress) {
   Placement placement = place(source, options, what);
   if (placement.plan != 1 || placement.height != 1) {
@@ -156,6 +179,12 @@ Tin make_tin(TinSource source, const TinReadOptions& options, const std::string&
   progress.check();
   set_origin(made, plan_metres);
   made.crs_wkt = std::move(placement.crs_wkt);
+  return made;
+}
+
+RegularTin tin_of_dem(const DemSource& dem, const MemoryBudget& budget, Progress& progress) {
+  RegularTin made = regular_tin(dem, metres_per_plan_unit(dem.crs_wkt()), budget, progress);
+  made.tin.crs_wkt = with_heights_in_metres(made.tin.crs_wkt);
   return made;
 }
 
@@ -218,6 +247,11 @@ void FaceCollector::add_rings(const std::vector<std::vector<std::int32_t>>& ring
 
 void FaceCollector::finish(std::vector<TinAttribute> polygon_attributes) {
   for (TinAttribute& one : polygon_attributes) {
+    if (one.values.size() != polygons_) {
+      throw InvalidInput(what_ + ": face attribute '" + one.name + "' has " +
+                         std::to_string(one.values.size()) + " values; it must have " +
+                         std::to_string(polygons_) + ", one each.");
+    }
     if (cut_) {
       std::vector<float> values;
       values.reserve(polygon_of_face_.size());

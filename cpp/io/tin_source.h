@@ -13,6 +13,7 @@
 
 #include "base/progress.h"
 #include "io/raster_dem.h"
+#include "terrain/regular_tin.h"
 #include "terrain/tin.h"
 #include "terrain/triangulate.h"
 
@@ -34,6 +35,10 @@ struct TinSource {
   // Points to triangulate, instead of vertices and faces; sigma_v and vertex_attributes of `tin` are then
   // those of the points.
   SurveyedPoints survey;
+  // Points, and polylines whose corners become points too (NaN in sigma_v and vertex_attributes of `tin`,
+  // which are those of the points). To be called once, after these are set.
+  void add_survey(std::vector<Xyz> points, const std::vector<std::vector<Xyz>>& breaklines);
+
   std::string crs;  // any text; empty = none
   struct Unit {
     double metres = 1;
@@ -46,6 +51,10 @@ struct TinSource {
 // 'a.ply'"). A CRS of the source in degrees is refused when its coordinates may be degrees; else, and when it
 // cannot be understood, it is dropped with a note. Throws InvalidInput, Cancelled.
 Tin make_tin(TinSource, const TinReadOptions&, const std::string& what, Progress&);
+
+// regular_tin() of a DEM with its CRS checked: degrees are refused (InvalidInput), a vertical part in other
+// units than metres left out.
+RegularTin tin_of_dem(const DemSource&, const MemoryBudget&, Progress&);
 
 // Polygons of a mesh as they are read, cut into triangles.
 class FaceCollector {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <string_view>
 #include <utility>
 
 #include <ogrsf_frmts.h>
@@ -19,6 +21,14 @@ namespace {
 
 constexpr const char* kSigmaField = "sigma_v";
 
+// GeoPackages say of layers without a CRS that theirs is undefined.
+std::string crs_of(OGRLayer& layer) {
+  const OGRSpatialReference* crs = layer.GetSpatialRef();
+  const char* name = crs != nullptr ? crs->GetName() : nullptr;
+  if (name == nullptr || std::string_view(name).starts_with("Undefined ")) return {};
+  return gdal::crs_wkt_of(crs);
+}
+
 class Collector {
  public:
   Collector(TinSource& source, const TinReadOptions& options, const std::string& what)
@@ -26,7 +36,7 @@ class Collector {
 
   void add_layer(OGRLayer& layer, Progress& progress) {
     name_ = layer.GetName();
-    take_crs(gdal::crs_wkt_of(layer.GetSpatialRef()));
+    take_crs(crs_of(layer));
     choose_fields(*layer.GetLayerDefn());
     for (const auto& feature : layer) {
       progress.check();

@@ -2,9 +2,10 @@
 // A terrain as triangles, of any shape: height fields, overhangs, bridges, walls, closed bodies.
 //
 // Everything is metres. A vertex's place in the CRS is origin + vertex / metres_per_unit in plan (CRS units),
-// origin + vertex in height (metres); origin is whole numbers, so that coordinates of a CRS in metres come
-// back as they were. The CRS is projected or none (a plane in metres): cpp/io refuses degrees. A Tin that
-// came out of clean() (tin_cleaning.h), regular_tin() or triangulate() also has
+// origin + vertex in height (metres). The origin is whole numbers, so that coordinates of a CRS in metres
+// come back to the last bit (those nearer to zero than to the origin: to the last bit of the origin). The CRS
+// is projected or none (a plane in metres): cpp/io refuses degrees. A Tin that came out of clean()
+// (tin_cleaning.h) or regular_tin() also has
 //   - finite vertices, indices in range, every vertex used by a face, no two vertices at one place,
 //   - faces with three different corners and an area, no two with the same corners,
 //   - faces turned alike within each component (tin_topology.h), height fields with their normals up.

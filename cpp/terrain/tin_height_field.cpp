@@ -243,10 +243,17 @@ std::string face_text(std::int32_t face) { return "face " + std::to_string(face)
 }  // namespace
 
 HeightFieldTest height_field_test(const Tin& tin) {
-  for (std::size_t f = 0; f < tin.faces.size(); ++f) {
-    if (!looks_up(tin, tin.faces[f])) {
-      return {false, face_text(static_cast<std::int32_t>(f)) + " is vertical or looks down"};
-    }
+  std::size_t others = 0;
+  std::int32_t first = 0;
+  for (std::size_t f = tin.faces.size(); f-- > 0;) {
+    if (looks_up(tin, tin.faces[f])) continue;
+    first = static_cast<std::int32_t>(f);
+    ++others;
+  }
+  if (others == 1) return {false, face_text(first) + " is vertical or looks down"};
+  if (others > 1) {
+    return {false, std::to_string(others) + " faces are vertical or look down, " + face_text(first) +
+                       " is the first"};
   }
   const Border border = border_of(tin);
   if (border.doubled)

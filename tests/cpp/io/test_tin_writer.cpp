@@ -98,6 +98,9 @@ TEST_F(TinWriter, GeoPackage) {
   EXPECT_EQ(tin_layers(path("my tin.gpkg"), progress), (std::vector<std::string>{"my tin"}));
   EXPECT_EQ(files(), (std::vector<std::string>{"my tin.gpkg"}));
   EXPECT_TRUE(write("again.gpkg", read("my tin.gpkg")).empty());
+  write("none.gpkg", sample(""));
+  EXPECT_EQ(read("none.gpkg").crs_wkt, "");
+  EXPECT_TRUE(says(testing::all_notes(read("none.gpkg")), "no CRS"));
 }
 
 // Through GDAL's own eyes; tests/python reads it with QGIS.

@@ -34,7 +34,7 @@ TEST(HeightField, OneFaceAndAPlainWithAHole) {
 }
 
 TEST(HeightField, WallsAndBoxesAreNone) {
-  EXPECT_TRUE(says(height_field_test(testing::box({0, 0, 0}, {1, 1, 1})).reason, "vertical or looks down"));
+  EXPECT_TRUE(says(height_field_test(testing::box({0, 0, 0}, {1, 1, 1})).reason, "10 faces are vertical or look down, face 0"));
   EXPECT_FALSE(is_height_field(tin_of({{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, {{0, 1, 2}})));
 }
 
