@@ -6,11 +6,11 @@
 #include <cstdint>
 
 #include "error_model/error_model.h"
+#include "error_model/verdict.h"
 #include "sight/scene.h"
 
 namespace sightbound {
 
-inline constexpr std::uint8_t kHidden = 0, kUncertain = 1, kVisible = 2, kNoVerdict = 255;
 inline constexpr std::uint32_t kNoCount = 4294967295u;
 
 // p = Phi(k*); settled k* never leave [-K, K], and there p is 0 or 1.

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/target_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "base/error.h"
+
+namespace sightbound {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLeastSpacing = 1e-3, kLargestLength = 1e6;  // metres; what is beyond is taken for a slip
+constexpr double kOnEdge = 1e-9;  // of a face's edges: a centre on the seam of two faces belongs to both
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
+void require_length(double value, const char* field) {
+  if (value >= kLeastSpacing && value <= kLargestLength) return;  // false for a NaN
+  throw InvalidInput(std::string(field) + " is " + number(value) + "; allowed are 0.001 to 1000000 m.");
+}
+
+// Height of the face over a plan place; NaN when it does not reach there or is vertical.
+double height_over(const SurfaceFace& face, double x, double y) {
+  const auto& [a, b, c] = face.corner;
+  const double twice = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+  if (twice == 0) return kNone;
+  const double v = ((x - a.x) * (c.y - a.y) - (c.x - a.x) * (y - a.y)) / twice;
+  const double w = ((b.x - a.x) * (y - a.y) - (x - a.x) * (b.y - a.y)) / twice;
+  if (!(v >= -kOnEdge && w >= -kOnEdge && v + w <= 1 + kOnEdge)) return kNone;
+  return a.z + v * (b.z - a.z) + w * (c.z - a.z);
+}
+
+bool looks_up(const SurfaceFace& face) {
+  const auto& [a, b, c] = face.corner;
+  return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y) > 0;
+}
+
+struct Span {
+  double ground = kNone, highest = kNone;
+};
+
+Span terrain_over(const Surface& surface, double x, double y, std::vector<std::uint32_t>& numbers) {
+  // Solids that are no height fields have undersides; DEMs may hold their corners in either turn.
+  const bool only_tops = surface.sides() == Sides::kSolid && surface.metric() == Metric::kNormal;
+  const Box3& bounds = surface.bounds();
+  surface.faces_near({{x, y, bounds.low.z}, {x, y, bounds.high.z}}, numbers);
+  Span span;
+  for (const std::uint32_t n : numbers) {
+    const std::optional<SurfaceFace> face = surface.face(n);
+    if (!face) continue;
+    const double height = height_over(*face, x, y);
+    if (std::isnan(height)) continue;
+    span.highest = std::isnan(span.highest) ? height : std::max(span.highest, height);
+    if (!only_tops || looks_up(*face))
+      span.ground = std::isnan(span.ground) ? height : std::min(span.ground, height);
+  }
+  return span;
+}
+
+TargetColumn column_of(const Span& span, const TargetLattice& lattice) {
+  TargetColumn column;
+  column.ground = std::numeric_limits<float>::quiet_NaN();
+  if (std::isnan(span.ground)) return column;
+  column.ground = static_cast<float>(span.ground);
+  const double h = lattice.height_spacing_m;
+  column.first = static_cast<int>(std::ceil((span.ground - lattice.corner.z) / h - 0.5));
+  column.last = static_cast<int>(std::floor((span.highest + lattice.ceiling_m - lattice.corner.z) / h - 0.5));
+  return column;
+}
+
+}  // namespace
+
+std::size_t TargetLattice::targets() const {
+  return std::transform_reduce(columns.begin(), columns.end(), std::size_t{0}, std::plus<>(),
+                               [](const TargetColumn& c) { return static_cast<std::size_t>(c.size()); });
+}
+
+int TargetLattice::top_layer(const TargetColumn& column, double height_m) const {
+  if (column.size() == 0) return column.first - 1;
+  const double top = static_cast<double>(column.ground) + height_m - corner.z;
+  return std::clamp(static_cast<int>(std::ceil(top / height_spacing_m)) - 1, column.first, column.last);
+}
+
+bool operator==(const TargetLattice& a, const TargetLattice& b) {
+  const auto same = [](const TargetColumn& p, const TargetColumn& q) {
+    return p.first == q.first && p.last == q.last &&
+           (p.ground == q.ground || (std::isnan(p.ground) && std::isnan(q.ground)));
+  };
+  return a.frame.x == b.frame.x && a.frame.y == b.frame.y &&
+         a.frame.metres_per_unit == b.frame.metres_per_unit && a.frame.crs_wkt == b.frame.crs_wkt &&
+         a.corner == b.corner && a.spacing_m == b.spacing_m && a.height_spacing_m == b.height_spacing_m &&
+         a.ceiling_m == b.ceiling_m && a.nx == b.nx && a.ny == b.ny &&
+         std::equal(a.columns.begin(), a.columns.end(), b.columns.begin(), b.columns.end(), same);
+}
+
+std::shared_ptr<const TargetLattice> lattice_above(const Surface& surface, const LatticeOptions& options,
+                                                   const Workers& workers, Progress& progress) {
+  require_length(options.spacing_m, "target_spacing");
+  require_length(options.ceiling_m, "target_ceiling");
+  auto lattice = std::make_shared<TargetLattice>();
+  lattice->frame = surface.frame();
+  lattice->spacing_m = options.spacing_m;
+  lattice->ceiling_m = options.ceiling_m;
+  lattice->height_spacing_m = options.height_spacing_m != 0
+                                  ? options.height_spacing_m
+                                  : std::min(options.spacing_m, options.ceiling_m / 4);
+  require_length(lattice->height_spacing_m, "target_height_spacing");
+  if (lattice->height_spacing_m > options.ceiling_m) {
+    throw InvalidInput("target_height_spacing is " + number(lattice->height_spacing_m) +
+                       " m, more than target_ceiling (" + number(options.ceiling_m) +
+                       " m): columns would have no target. Give at most the ceiling.");
+  }
+
+  const Box3& bounds = surface.bounds();
+  const auto down_to = [](double value, double step) { return std::floor(value / step) * step; };
+  lattice->corner = {down_to(bounds.low.x, lattice->spacing_m), down_to(bounds.low.y, lattice->spacing_m),
+                     down_to(bounds.low.z, lattice->height_spacing_m)};
+  const double nx = std::ceil((bounds.high.x - lattice->corner.x) / lattice->spacing_m);
+  const double ny = std::ceil((bounds.high.y - lattice->corner.y) / lattice->spacing_m);
+  if (!(nx * ny < 2147483647.0)) {
+    throw InvalidInput("target_spacing is " + number(lattice->spacing_m) + " m: " + number(nx * ny) +
+                       " columns of targets; at most 2147483647 are allowed. Give a larger one.");
+  }
+  lattice->nx = std::max(static_cast<int>(nx), 1);
+  lattice->ny = std::max(static_cast<int>(ny), 1);
+  lattice->columns.resize(static_cast<std::size_t>(lattice->nx) * static_cast<std::size_t>(lattice->ny));
+
+  workers.for_each(static_cast<std::size_t>(lattice->ny), [&](std::size_t j) {
+    std::vector<std::uint32_t> numbers;
+    for (int i = 0; i < lattice->nx; ++i) {
+      const Xyz centre = lattice->centre(i, static_cast<int>(j), 0);
+      lattice->columns[lattice->number(i, static_cast<int>(j))] =
+          column_of(terrain_over(surface, centre.x, centre.y, numbers), *lattice);
+    }
+    progress.advance(1.0 / lattice->ny);
+  });
+  return lattice;
+}
+
+}  // namespace sightbound
