@@ -75,7 +75,7 @@ int run(int count, char** words) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   if (what == "covers") {
-    const CoverMasks covers = build_covers(*surface, 0.95, options, progress);
+    const CoverMasks covers = build_covers(surface, 0.95, options, progress);
     const double took = seconds();
     std::printf(
         "covers %-7s sigma %g voxel %g: %6.2f s, peak %6.0f MiB (+%.0f); masks %.0f MiB, %zu inner, %zu "

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/memory_budget.h"
 #include "base/parallel.h"
+#include "volume/tin_surface.h"
 #include "volume/vdb.h"
 #include "volume/vdb_fill.h"
 #include "volume/voxel_size.h"
@@ -73,7 +74,12 @@ ErrorVolume ErrorVolume::build(std::shared_ptr<const Surface> surface, const Vol
   auto trees = std::make_shared<Trees>(pack(end, end));
   const VoxelSize size{voxels.voxel_m, voxels.voxel_height_m};
   progress.begin(1, 1);
-  volume.unknown_ = fill_ratios(*surface, size, volume.largest_ratio_, trees->ratios, workers, progress);
+  if (surface->metric() == Metric::kVertical) {
+    volume.unknown_ = fill_ratios(*surface, size, volume.largest_ratio_, trees->ratios, workers, progress);
+  } else {
+    fill_nearest(dynamic_cast<const TinSurface&>(*surface), size, volume.largest_ratio_, trees->ratios,
+                 trees->ambiguous, workers, progress);
+  }
   progress.finish();
 
   VolumeReport& report = volume.report_;

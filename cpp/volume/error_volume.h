@@ -100,12 +100,13 @@ class ErrorVolume {
   VolumeReport report_;
 };
 
-// inner(c) and outer(c) of a volume that is not built: a hundredth of its memory.
+// inner(c) and outer(c) alone. Height fields: filled without bounds of k, in a tenth of the memory.
 struct CoverMasks {
   VolumeMask inner, outer;
   double voxel_m = 0, voxel_height_m = 0;
 };
-CoverMasks build_covers(const Surface& surface, double confidence, const VolumeOptions&, Progress&);
+CoverMasks build_covers(const std::shared_ptr<const Surface>& surface, double confidence,
+                        const VolumeOptions&, Progress&);
 
 // What build() would take, before it does.
 struct VolumeNeed {
