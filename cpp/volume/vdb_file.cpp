@@ -203,7 +203,7 @@ VdbContent read_vdb(const std::string& path, const std::string& what) {
     openvdb::io::File file(path);
     file.open(/*delayLoad=*/false);
     content.metadata = *file.getMetadata();
-    for (const openvdb::GridBase::Ptr& grid : *file.getGrids()) content.grids.push_back(grid);
+    content.grids = *file.getGrids();
     file.close();
   } catch (const openvdb::Exception& error) {
     throw IoError("'" + path + "' cannot be read: " + error.what() + ".");
