@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The hierarchical walk of a line through the trees of a volume. Private to cpp/volume.
+//
+// Notation: everything in voxels from the frame's origin; a column of side S is a square of S x S voxels in
+// plan, a box of side S one of the cubes it is cut into; t = share of the line.
+//
+// The line crosses the columns of a level one after the other. Within a column its heights fill an interval,
+// and it meets exactly the boxes whose layers this interval meets: it is continuous, and stays within the
+// column. So the walk asks for tiles at the coarsest level first, and goes down only where a box has
+// children.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "volume/block_columns.h"
+#include "volume/vdb.h"
+#include "volume/volume_ray.h"
+
+namespace sightbound {
+
+inline constexpr int kLeaf = 8, kNode = 128, kTop = 4096;  // voxels
+
+inline constexpr double kNeverCrossed = std::numeric_limits<double>::infinity();
+
+// The part of a line within one column, and the heights it takes there.
+struct Piece {
+  double from = 0, to = 0;  // t
+  double low = 0, high = 0;
+};
+
+// The line in voxels.
+struct Path {
+  double x, dx, y, dy, z, dz, drop;
+  double turn;  // t where the height is least
+
+  Path(const VolumeLine& line, double side, double height)
+      : x(line.from.x / side),
+        dx((line.to.x - line.from.x) / side),
+        y(line.from.y / side),
+        dy((line.to.y - line.from.y) / side),
+        z(line.from.z / height),
+        dz((line.to.z - line.from.z) / height),
+        drop(line.drop / height),
+        turn(drop > 0 ? 0.5 - dz / (2 * drop)
+             : dz > 0 ? -kNeverCrossed
+                      : kNeverCrossed) {}
+
+  double height(double t) const { return z + t * dz - drop * t * (1 - t); }
+  Piece piece(double from, double to) const {
+    const double a = height(from), b = height(to);
+    Piece piece{from, to, std::min(a, b), std::max(a, b)};
+    if (from < turn && turn < to) piece.low = std::min(piece.low, height(turn));
+    return piece;
+  }
+};
+
+// The columns of one side along a path, one after the other.
+class Columns {
+ public:
+  Columns(const Path& path, int side, double t)
+      : path_(path), side_(side), i_(start(path.x, path.dx, t)), j_(start(path.y, path.dy, t)) {
+    next_i_ = crossing(path.x, path.dx, i_);
+    next_j_ = crossing(path.y, path.dy, j_);
+  }
+
+  int i() const { return i_; }
+  int j() const { return j_; }
+  double end() const { return std::min(next_i_, next_j_); }  // t where the column is left
+  void step() {
+    if (next_i_ <= next_j_) {
+      i_ += path_.dx > 0 ? 1 : -1;
+      next_i_ = crossing(path_.x, path_.dx, i_);
+    } else {
+      j_ += path_.dy > 0 ? 1 : -1;
+      next_j_ = crossing(path_.y, path_.dy, j_);
+    }
+  }
+
+ private:
+  // A place on the border belongs to the column that the path enters.
+  int start(double at, double slope, double t) const {
+    const double place = (at + t * slope) / side_, whole = std::floor(place);
+    return static_cast<int>(whole) - (place == whole && slope < 0 ? 1 : 0);
+  }
+  double crossing(double at, double slope, int index) const {
+    if (slope == 0) return kNeverCrossed;
+    return (static_cast<double>(slope > 0 ? index + 1 : index) * side_ - at) / slope;
+  }
+
+  const Path& path_;
+  int side_;
+  int i_, j_;
+  double next_i_, next_j_;
+};
+
+inline int layer(double z, int side) { return static_cast<int>(std::floor(z / side)); }
+
+// What is walked.
+struct WalkedTrees {
+  const RatioTree& ratios;
+  const BitTree& ambiguous;
+  const PlanMask* unknown;  // null = the terrain has no columns to speak of
+  double side, height;      // of a voxel, metres
+  const BlockColumns& columns;
+};
+
+// One walk; `Passed` hears of every voxel or tile passed, in the order of the columns:
+//   bool voxel(std::int32_t packed, bool ambiguous, double t)   false ends the walk
+//   bool unknown(double t)                                      the column has no terrain to speak of
+//   bool may_matter(std::int32_t packed) const                  could bounds not below these change anything?
+class RayWalk {
+ public:
+  RayWalk(const WalkedTrees& trees, const VolumeLine& line)
+      : unknown_(trees.unknown),
+        columns_(trees.columns),
+        path_(line, trees.side, trees.height),
+        has_ambiguous_(!trees.ambiguous.empty()),
+        background_(trees.ratios.background()),
+        ratios_(trees.ratios),
+        ambiguous_(trees.ambiguous) {}
+
+  template <class Passed>
+  void run(double t0, double t1, Passed& passed) {
+    Columns top(path_, kTop, t0);
+    for (double t = t0; t < t1; top.step()) {
+      const double top_end = std::min(top.end(), t1);
+      if (top_end <= t) continue;
+      const bool crossed =
+          unknown_ == nullptr && passes_tiles<RatioNode4096>(path_.piece(t, top_end), top, kTop, passed);
+      if (ended_ || (!crossed && !nodes(t, top_end, passed))) return;
+      t = top_end;
+    }
+  }
+
+ private:
+  // Columns of 128 within [t0, t1].
+  template <class Passed>
+  bool nodes(double t0, double t1, Passed& passed) {
+    Columns columns(path_, kNode, t0);
+    for (double t = t0; t < t1; columns.step()) {
+      const double end = std::min(columns.end(), t1);
+      if (end <= t) continue;
+      const Piece piece = path_.piece(t, end);
+      const PlanState doubt =
+          unknown_ != nullptr ? unknown_->of_128(columns.i(), columns.j()) : PlanState::kNone;
+      if (doubt == PlanState::kAll) {
+        if (!passed.unknown(t)) return false;
+      }
+      bool crossed = false;
+      if (doubt != PlanState::kSome) {
+        if (piece.low > columns_.end_128(columns.i(), columns.j())) {
+          crossed = true;
+          ended_ = !passed.voxel(background_, false, t);
+        } else {
+          crossed = passes_tiles<RatioNode128>(piece, columns, kNode, passed);
+        }
+      }
+      if (ended_ || (!crossed && !leaves(t, end, passed))) return false;
+      t = end;
+    }
+    return true;
+  }
+
+  template <class Passed>
+  bool leaves(double t0, double t1, Passed& passed) {
+    Columns columns(path_, kLeaf, t0);
+    for (double t = t0; t < t1; columns.step()) {
+      const double end = std::min(columns.end(), t1);
+      if (end <= t) continue;
+      const Piece piece = path_.piece(t, end);
+      const PlanState doubt =
+          unknown_ != nullptr ? unknown_->of_8(columns.i(), columns.j()) : PlanState::kNone;
+      if (doubt == PlanState::kAll && !passed.unknown(t)) return false;
+      const bool some_unknown = doubt == PlanState::kSome;
+      if (some_unknown || may_matter(piece, columns, passed)) {
+        if (!voxels(piece, columns, some_unknown, passed)) return false;
+      } else if (!passed.voxel(background_, false, t)) {
+        return false;
+      }
+      t = end;
+    }
+    return true;
+  }
+
+  // Could anything in the layers of a piece change what has been passed?
+  template <class Passed>
+  bool may_matter(const Piece& piece, const Columns& leaf_column, const Passed& passed) const {
+    const BlockColumns::Column& column = columns_.of(leaf_column.i(), leaf_column.j());
+    const int from = layer(piece.low, 1);
+    if (!column.is_told(from)) return true;
+    const int to = std::min(layer(piece.high, 1), column.end() - 1);
+    const std::int32_t* least = columns_.layers(column);
+    for (int k = from; k <= to; ++k) {
+      const std::int32_t packed = least[k - column.first];
+      if (packed != background_ && passed.may_matter(packed)) return true;
+    }
+    return false;
+  }
+
+  // Voxel by voxel within a column of leaves.
+  template <class Passed>
+  bool voxels(const Piece& piece, const Columns& leaf_column, bool some_unknown, Passed& passed) {
+    const int i8 = leaf_column.i() * kLeaf, j8 = leaf_column.j() * kLeaf;
+    const int k8 = layer(piece.low, kLeaf), k8_end = layer(piece.high, kLeaf);
+    bool any_leaf = some_unknown;
+    find_leaves(i8, j8, k8, k8_end);
+    for (int k = k8; k <= k8_end && !any_leaf; ++k) any_leaf = leaf_at(k) != nullptr || beyond_cache(k);
+    if (!any_leaf) {
+      for (int k = k8; k <= k8_end; ++k) {
+        if (!passed.voxel(tile_at(k), false, piece.from)) return false;
+      }
+      return true;
+    }
+    Columns columns(path_, 1, piece.from);
+    for (double t = piece.from; t < piece.to; columns.step()) {
+      const double end = std::min(columns.end(), piece.to);
+      if (end <= t) continue;
+      const int i = columns.i() - i8, j = columns.j() - j8;
+      // Rounding may see the path a hair outside: there is nothing left to walk.
+      if (i < 0 || j < 0 || i >= kLeaf || j >= kLeaf) {
+        t = end;
+        continue;
+      }
+      if (some_unknown && unknown_->at(columns.i(), columns.j()) && !passed.unknown(t)) return false;
+      const Piece part = path_.piece(t, end);
+      const int k_end = layer(part.high, 1);
+      for (int k = layer(part.low, 1); k <= k_end; ++k) {
+        const openvdb::Coord place(columns.i(), columns.j(), k);
+        const bool two_sided = has_ambiguous_ && ambiguous_.isValueOn(place);
+        if (!passed.voxel(value(i, j, k, place), two_sided, t)) return false;
+      }
+      t = end;
+    }
+    return true;
+  }
+
+  std::int32_t value(int i, int j, int k, const openvdb::Coord& place) {
+    const int k8 = k >> 3;
+    if (k8 < first_layer_ || beyond_cache(k8)) return ratios_.getValue(place);
+    const RatioLeaf* leaf = leaf_at(k8);
+    return leaf != nullptr ? leaf->getValue(static_cast<openvdb::Index>(i * 64 + j * 8 + (k & 7)))
+                           : tile_at(k8);
+  }
+
+  // The boxes of 8 above one another that a piece may meet: a few, for lines that are not steep.
+  void find_leaves(int i8, int j8, int k8, int k8_end) {
+    first_layer_ = k8;
+    for (int k = k8; k <= k8_end && k - k8 < kCached; ++k) {
+      const openvdb::Coord place(i8, j8, k * kLeaf);
+      const auto at = static_cast<std::size_t>(k - k8);
+      leaves_[at] = ratios_.probeConstLeaf(place);
+      if (leaves_[at] == nullptr) tiles_[at] = ratios_.getValue(place);
+    }
+  }
+  bool beyond_cache(int k8) const { return k8 - first_layer_ >= kCached; }
+  const RatioLeaf* leaf_at(int k8) const {
+    return beyond_cache(k8) ? nullptr : leaves_[static_cast<std::size_t>(k8 - first_layer_)];
+  }
+  std::int32_t tile_at(int k8) const { return tiles_[static_cast<std::size_t>(k8 - first_layer_)]; }
+
+  // Passes the boxes of a piece when none of them has children; false when one does and nothing was passed.
+  template <class Node, class Passed>
+  bool passes_tiles(const Piece& piece, const Columns& column, int side, Passed& passed) {
+    const int from = layer(piece.low, side), to = layer(piece.high, side);
+    for (int k = from; k <= to; ++k) {
+      if (ratios_.template probeConstNode<Node>({column.i() * side, column.j() * side, k * side}) != nullptr)
+        return false;
+    }
+    for (int k = from; k <= to; ++k) {
+      if (!passed.voxel(ratios_.getValue({column.i() * side, column.j() * side, k * side}), false,
+                        piece.from)) {
+        ended_ = true;
+        return true;
+      }
+    }
+    return true;
+  }
+
+  static constexpr int kCached = 8;
+  const PlanMask* unknown_;
+  const BlockColumns& columns_;
+  Path path_;
+  bool has_ambiguous_, ended_ = false;
+  std::int32_t background_;
+  openvdb::tree::ValueAccessor<const RatioTree, false> ratios_;
+  openvdb::tree::ValueAccessor<const BitTree, false> ambiguous_;
+  int first_layer_ = 0;
+  std::array<const RatioLeaf*, kCached> leaves_{};
+  std::array<std::int32_t, kCached> tiles_{};
+};
+
+}  // namespace sightbound

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/volume_ray.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/ray_walk.h"
+
+namespace sightbound {
+
+namespace {
+
+// The smallest k of a terrain that has an inside.
+struct LeastRatio {
+  float low, high, certain;  // certain = -K
+
+  bool voxel(std::int32_t packed, bool, double) {
+    const RatioInterval k = unpack(packed);
+    if (k.low < low) low = k.low;
+    if (k.high < high) high = k.high;
+    return high > certain;
+  }
+  bool may_matter(std::int32_t packed) const {
+    const RatioInterval k = unpack(packed);
+    return k.low < low || k.high < high;
+  }
+  bool unknown(double) {
+    low = std::min(low, 0.0f);
+    high = std::min(high, 0.0f);
+    return true;
+  }
+};
+
+// The smallest distance from a sheet, and how far through it the line goes.
+struct Passage {
+  float nearest, farthest;    // bounds of the smallest abs(k)
+  float through = 0;          // sigmas on both sides of the sheet
+  float plus = 0, minus = 0;  // the most proven on either side since the sheet's side was last in doubt
+  std::int32_t outside;
+
+  bool voxel(std::int32_t packed, bool ambiguous, double) {
+    if (packed == outside) {  // between sheets no side is known
+      plus = minus = 0;
+      return true;
+    }
+    const RatioInterval k = unpack(packed);
+    nearest = std::min(nearest, std::max({k.low, -k.high, 0.0f}));
+    farthest = std::min(farthest, std::max(std::abs(k.low), std::abs(k.high)));
+    if (ambiguous) {
+      plus = minus = 0;
+      return true;
+    }
+    if (k.low > 0) {
+      through = std::max(through, std::min(minus, k.low));
+      plus = std::max(plus, k.low);
+    } else if (k.high < 0) {
+      through = std::max(through, std::min(plus, -k.high));
+      minus = std::max(minus, -k.high);
+    }
+    return true;
+  }
+  bool unknown(double) { return true; }
+  bool may_matter(std::int32_t) const { return true; }  // sides count, too
+};
+
+struct FirstBelow {
+  float ratio;
+  bool sheet;
+  double t = VolumeRays::kNever;
+
+  bool voxel(std::int32_t packed, bool, double at) {
+    const RatioInterval k = unpack(packed);
+    if (!((sheet ? std::max({k.low, -k.high, 0.0f}) : k.low) < ratio)) return true;
+    t = at;
+    return false;
+  }
+  bool may_matter(std::int32_t packed) const { return sheet || unpack(packed).low < ratio; }
+  bool unknown(double at) {
+    if (!(ratio > 0)) return true;
+    t = at;
+    return false;
+  }
+};
+
+}  // namespace
+
+VolumeRays::VolumeRays(const ErrorVolume& volume)
+    : volume_(volume),
+      columns_(std::make_unique<BlockColumns>(volume.trees().ratios, Workers(Workers::count_here()))) {}
+
+RayWalk VolumeRays::walk(const VolumeLine& line) const {
+  const ErrorVolume::Trees& trees = volume_.trees();
+  const bool columns = volume_.surface().metric() == Metric::kVertical;
+  return {{trees.ratios, trees.ambiguous, columns ? &volume_.unknown_columns() : nullptr, volume_.voxel_m(),
+           volume_.voxel_height_m(), *columns_},
+          line};
+}
+
+VolumeRays::~VolumeRays() = default;
+
+RatioInterval VolumeRays::least(const VolumeLine& line, double t0, double t1) const {
+  const float beyond_all = volume_.beyond_ratio();
+  RayWalk walk = this->walk(line);
+  if (volume_.surface().sides() == Sides::kSheet) {
+    Passage passage{beyond_all, beyond_all, 0, 0, 0, volume_.trees().ratios.background()};
+    walk.run(t0, t1, passage);
+    if (passage.nearest > 0) return {passage.nearest, passage.farthest};
+    return {-beyond_all, passage.through > 0 ? -passage.through : passage.farthest};
+  }
+  LeastRatio least{beyond_all, beyond_all, -static_cast<float>(volume_.largest_ratio())};
+  walk.run(t0, t1, least);
+  return {least.low, least.high};
+}
+
+double VolumeRays::first(const VolumeLine& line, double ratio, double t0, double t1) const {
+  RayWalk walk = this->walk(line);
+  FirstBelow first{static_cast<float>(ratio), volume_.surface().sides() == Sides::kSheet};
+  walk.run(t0, t1, first);
+  return first.t;
+}
+
+}  // namespace sightbound
