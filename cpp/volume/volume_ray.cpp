@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volume/ray_walk.h"
+#include "volume/vdb_ray_walk.h"
 
 namespace sightbound {
 

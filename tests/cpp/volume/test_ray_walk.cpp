@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "volume/ray_walk.h"
+#include "volume/vdb_ray_walk.h"
 
 namespace sightbound {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volume/block_columns.h"
+#include "volume/vdb_block_columns.h"
 
 #include <algorithm>
 #include <array>

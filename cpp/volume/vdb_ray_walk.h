@@ -16,7 +16,7 @@
 #include <limits>
 #include <vector>
 
-#include "volume/block_columns.h"
+#include "volume/vdb_block_columns.h"
 #include "volume/vdb.h"
 #include "volume/volume_ray.h"
 
