@@ -43,4 +43,19 @@ inline RatioInterval unpack(std::int32_t packed) {
           from_half(static_cast<std::uint16_t>(bits & 0xffffu))};
 }
 
+// Halves in the order of their values: ordered_low(a) < ordered_low(b) when unpack(a).low < unpack(b).low,
+// likewise the highs. -0 comes before 0.
+inline int ordered_half(std::uint32_t half) {
+  const int bits = static_cast<std::int16_t>(half & 0xffffu);
+  return bits ^ ((bits >> 15) & 0x7fff);
+}
+inline int ordered_low(std::int32_t packed) {
+  return ordered_half(std::bit_cast<std::uint32_t>(packed) >> 16);
+}
+inline int ordered_high(std::int32_t packed) { return ordered_half(std::bit_cast<std::uint32_t>(packed)); }
+// The number that stands at this place of the order.
+inline float from_ordered(int ordered) {
+  return from_half(static_cast<std::uint16_t>(ordered_half(static_cast<std::uint32_t>(ordered) & 0xffffu)));
+}
+
 }  // namespace sightbound

@@ -12,12 +12,6 @@ namespace {
 
 constexpr int kLeaf = 8;
 
-// Halves in the order of their values, as 16-bit numbers.
-inline std::int16_t ordered(std::uint16_t half) {
-  const auto bits = static_cast<std::int16_t>(half);
-  return static_cast<std::int16_t>(bits ^ ((bits >> 15) & 0x7fff));
-}
-
 // The smallest low and the smallest high of every layer of a leaf.
 std::array<std::int32_t, kLeaf> least_of_layers(const RatioLeaf& leaf) {
   std::array<std::int16_t, kLeaf> low, high;
@@ -26,18 +20,13 @@ std::array<std::int32_t, kLeaf> least_of_layers(const RatioLeaf& leaf) {
   const std::int32_t* values = leaf.buffer().data();
   for (int column = 0; column < kLeaf * kLeaf; ++column, values += kLeaf) {
     for (std::size_t k = 0; k < kLeaf; ++k) {
-      const auto bits = static_cast<std::uint32_t>(values[k]);
-      low[k] = std::min(low[k], ordered(static_cast<std::uint16_t>(bits >> 16)));
-      high[k] = std::min(high[k], ordered(static_cast<std::uint16_t>(bits & 0xffffu)));
+      low[k] = std::min(low[k], static_cast<std::int16_t>(ordered_low(values[k])));
+      high[k] = std::min(high[k], static_cast<std::int16_t>(ordered_high(values[k])));
     }
   }
   std::array<std::int32_t, kLeaf> least;
   for (std::size_t k = 0; k < kLeaf; ++k) {
-    // Its own inverse.
-    const auto back = [](std::int16_t value) {
-      return static_cast<std::uint16_t>(ordered(static_cast<std::uint16_t>(value)));
-    };
-    least[k] = static_cast<std::int32_t>(static_cast<std::uint32_t>(back(low[k])) << 16 | back(high[k]));
+    least[k] = pack(static_cast<double>(from_ordered(low[k])), static_cast<double>(from_ordered(high[k])));
   }
   return least;
 }

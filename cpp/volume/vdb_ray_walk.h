@@ -16,8 +16,8 @@
 #include <limits>
 #include <vector>
 
-#include "volume/vdb_block_columns.h"
 #include "volume/vdb.h"
+#include "volume/vdb_block_columns.h"
 #include "volume/volume_ray.h"
 
 namespace sightbound {
@@ -35,7 +35,8 @@ struct Piece {
 // The line in voxels.
 struct Path {
   double x, dx, y, dy, z, dz, drop;
-  double turn;  // t where the height is least
+  double turn;            // t where the height is least
+  double per_dx, per_dy;  // 1 / dx, 1 / dy
 
   Path(const VolumeLine& line, double side, double height)
       : x(line.from.x / side),
@@ -47,7 +48,9 @@ struct Path {
         drop(line.drop / height),
         turn(drop > 0 ? 0.5 - dz / (2 * drop)
              : dz > 0 ? -kNeverCrossed
-                      : kNeverCrossed) {}
+                      : kNeverCrossed),
+        per_dx(1 / dx),
+        per_dy(1 / dy) {}
 
   double height(double t) const { return z + t * dz - drop * t * (1 - t); }
   Piece piece(double from, double to) const {
@@ -63,8 +66,8 @@ class Columns {
  public:
   Columns(const Path& path, int side, double t)
       : path_(path), side_(side), i_(start(path.x, path.dx, t)), j_(start(path.y, path.dy, t)) {
-    next_i_ = crossing(path.x, path.dx, i_);
-    next_j_ = crossing(path.y, path.dy, j_);
+    next_i_ = crossing(path.x, path.dx, path.per_dx, i_);
+    next_j_ = crossing(path.y, path.dy, path.per_dy, j_);
   }
 
   int i() const { return i_; }
@@ -73,10 +76,10 @@ class Columns {
   void step() {
     if (next_i_ <= next_j_) {
       i_ += path_.dx > 0 ? 1 : -1;
-      next_i_ = crossing(path_.x, path_.dx, i_);
+      next_i_ = crossing(path_.x, path_.dx, path_.per_dx, i_);
     } else {
       j_ += path_.dy > 0 ? 1 : -1;
-      next_j_ = crossing(path_.y, path_.dy, j_);
+      next_j_ = crossing(path_.y, path_.dy, path_.per_dy, j_);
     }
   }
 
@@ -86,9 +89,9 @@ class Columns {
     const double place = (at + t * slope) / side_, whole = std::floor(place);
     return static_cast<int>(whole) - (place == whole && slope < 0 ? 1 : 0);
   }
-  double crossing(double at, double slope, int index) const {
+  double crossing(double at, double slope, double per_slope, int index) const {
     if (slope == 0) return kNeverCrossed;
-    return (static_cast<double>(slope > 0 ? index + 1 : index) * side_ - at) / slope;
+    return (static_cast<double>(slope > 0 ? index + 1 : index) * side_ - at) * per_slope;
   }
 
   const Path& path_;
@@ -97,7 +100,14 @@ class Columns {
   double next_i_, next_j_;
 };
 
-inline int layer(double z, int side) { return static_cast<int>(std::floor(z / side)); }
+// The floor; std::floor is a call on the plainest processors.
+inline int whole_below(double value) {
+  const int i = static_cast<int>(value);
+  return i - (static_cast<double>(i) > value);
+}
+inline int layer(double z) { return whole_below(z); }
+// Sides are powers of two: layers of boxes are those of voxels, shifted.
+inline int layer(double z, int side) { return whole_below(z / side); }
 
 // What is walked.
 struct WalkedTrees {
@@ -190,9 +200,9 @@ class RayWalk {
   template <class Passed>
   bool may_matter(const Piece& piece, const Columns& leaf_column, const Passed& passed) const {
     const BlockColumns::Column& column = columns_.of(leaf_column.i(), leaf_column.j());
-    const int from = layer(piece.low, 1);
+    const int from = layer(piece.low);
     if (!column.is_told(from)) return true;
-    const int to = std::min(layer(piece.high, 1), column.end() - 1);
+    const int to = std::min(layer(piece.high), column.end() - 1);
     const std::int32_t* least = columns_.layers(column);
     for (int k = from; k <= to; ++k) {
       const std::int32_t packed = least[k - column.first];
@@ -227,8 +237,8 @@ class RayWalk {
       }
       if (some_unknown && unknown_->at(columns.i(), columns.j()) && !passed.unknown(t)) return false;
       const Piece part = path_.piece(t, end);
-      const int k_end = layer(part.high, 1);
-      for (int k = layer(part.low, 1); k <= k_end; ++k) {
+      const int k_end = layer(part.high);
+      for (int k = layer(part.low); k <= k_end; ++k) {
         const openvdb::Coord place(columns.i(), columns.j(), k);
         const bool two_sided = has_ambiguous_ && ambiguous_.isValueOn(place);
         if (!passed.voxel(value(i, j, k, place), two_sided, t)) return false;

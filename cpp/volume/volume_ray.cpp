@@ -10,23 +10,21 @@ namespace sightbound {
 
 namespace {
 
-// The smallest k of a terrain that has an inside.
+// The smallest k of a terrain that has an inside; bounds as places in the order of halves.
 struct LeastRatio {
-  float low, high, certain;  // certain = -K
+  int low, high, certain;  // certain: -K or below
 
   bool voxel(std::int32_t packed, bool, double) {
-    const RatioInterval k = unpack(packed);
-    if (k.low < low) low = k.low;
-    if (k.high < high) high = k.high;
+    low = std::min(low, ordered_low(packed));
+    high = std::min(high, ordered_high(packed));
     return high > certain;
   }
   bool may_matter(std::int32_t packed) const {
-    const RatioInterval k = unpack(packed);
-    return k.low < low || k.high < high;
+    return ordered_low(packed) < low || ordered_high(packed) < high;
   }
   bool unknown(double) {
-    low = std::min(low, 0.0f);
-    high = std::min(high, 0.0f);
+    low = std::min(low, 0);
+    high = std::min(high, 0);
     return true;
   }
 };
@@ -107,9 +105,10 @@ RatioInterval VolumeRays::least(const VolumeLine& line, double t0, double t1) co
     if (passage.nearest > 0) return {passage.nearest, passage.farthest};
     return {-beyond_all, passage.through > 0 ? -passage.through : passage.farthest};
   }
-  LeastRatio least{beyond_all, beyond_all, -static_cast<float>(volume_.largest_ratio())};
+  const int most = ordered_half(half_above(static_cast<double>(beyond_all)));
+  LeastRatio least{most, most, ordered_half(half_below(-volume_.largest_ratio()))};
   walk.run(t0, t1, least);
-  return {least.low, least.high};
+  return {from_ordered(least.low), from_ordered(least.high)};
 }
 
 double VolumeRays::first(const VolumeLine& line, double ratio, double t0, double t1) const {
