@@ -57,10 +57,10 @@ double SightLine::needed_height(double k, double floor, double& hint) const {
 
 void SightLine::for_each_place(const std::function<void(const JudgedPlace&)>& visit) const {
   if (span_ == 0) return;
-  Search search(*this, LeastRatio(*this, -scene_.largest_ratio));
-  search.every_place([&](const Stencil& stencil, bool outside, double d, double xi) {
-    const JudgedPlace place = search.described(stencil, outside, d, xi);
-    if (search.is_between(place.share)) visit(place);
+  Places places(*this);
+  places.every_place([&](const Stencil& stencil, bool outside, double d, double xi) {
+    const JudgedPlace place = places.described(stencil, outside, d, xi);
+    if (places.is_between(place.share)) visit(place);
   });
 }
 

@@ -85,6 +85,7 @@ class SightLine {
   void for_each_place(const std::function<void(const JudgedPlace&)>&) const;
 
  private:
+  class Places;
   template <class Objective>
   class Search;
   class LeastRatio;
