@@ -67,6 +67,7 @@ ErrorVolume ErrorVolume::build(std::shared_ptr<const Surface> surface, const Vol
   volume.voxel_m_ = voxels.voxel_m;
   volume.voxel_height_m_ = voxels.voxel_height_m;
   volume.largest_ratio_ = largest_ratio_of(options);
+  volume.error_model_ = options.error_model;
   require_memory(*surface, options);
 
   const Workers workers(options.threads);
@@ -114,14 +115,24 @@ RatioInterval ErrorVolume::at(const Voxel& voxel) const {
 }
 bool ErrorVolume::is_ambiguous(const Voxel& voxel) const { return trees_->ambiguous.isValueOn(coord(voxel)); }
 
-CoverMasks build_covers(const Surface& surface, double confidence, const VolumeOptions& options,
-                        Progress& progress) {
+CoverMasks build_covers(const std::shared_ptr<const Surface>& shared, double confidence,
+                        const VolumeOptions& options, Progress& progress) {
+  const Surface& surface = *shared;
+  const double quantile = two_sided_quantile(confidence);
   const VoxelChoice voxels = choose_voxels(surface, options);
+  if (surface.metric() == Metric::kNormal) {
+    VolumeOptions exact = options;
+    exact.confidence = exact.largest_confidence = confidence;
+    exact.voxel_m = voxels.voxel_m;
+    exact.voxel_height_m = voxels.voxel_height_m;
+    const ErrorVolume volume = ErrorVolume::build(shared, exact, progress);
+    return {volume.inner(confidence), volume.outer(confidence), voxels.voxel_m, voxels.voxel_height_m};
+  }
   const Workers workers(options.threads);
   auto inner = std::make_shared<VolumeMask::Tree>(), outer = std::make_shared<VolumeMask::Tree>();
   progress.begin(1, 1);
-  fill_covers(surface, {voxels.voxel_m, voxels.voxel_height_m}, two_sided_quantile(confidence), inner->bits,
-              outer->bits, workers, progress);
+  fill_covers(surface, {voxels.voxel_m, voxels.voxel_height_m}, quantile, inner->bits, outer->bits, workers,
+              progress);
   progress.finish();
   return {VolumeMask(inner), VolumeMask(outer), voxels.voxel_m, voxels.voxel_height_m};
 }

@@ -37,6 +37,7 @@ struct VolumeOptions {
       0;  // the band reaches as far as its quantile; 0 = K is 3.29, or z(confidence) when larger
   std::size_t memory_bytes = 0;  // budget; 0 = three quarters of the memory usable
   int threads = 0;               // 0 = all
+  std::string error_model;       // ErrorModel::describe() of what the surface's error came from; only kept
 };
 
 struct VolumeReport {
@@ -75,6 +76,8 @@ class ErrorVolume {
   double largest_ratio() const { return largest_ratio_; }        // K
   float beyond_ratio() const { return beyond(largest_ratio_); }  // K'
   const Surface& surface() const { return *surface_; }
+  const std::shared_ptr<const Surface>& shared_surface() const { return surface_; }
+  const std::string& error_model() const { return error_model_; }
   const VolumeReport& report() const { return report_; }
 
   Voxel voxel_of(const Xyz& local) const;
@@ -94,6 +97,7 @@ class ErrorVolume {
   ErrorVolume() = default;
 
   double voxel_m_ = 0, voxel_height_m_ = 0, largest_ratio_ = 0;
+  std::string error_model_;
   std::shared_ptr<const Surface> surface_;
   std::shared_ptr<const Trees> trees_;
   PlanMask unknown_;

@@ -29,6 +29,8 @@ struct ErrorVolume::Trees {
   BitTree ambiguous;
 
   explicit Trees(std::int32_t background) : ratios(background) {}
+  Trees(const openvdb::FloatTree& shape, std::int32_t background)
+      : ratios(shape, background, openvdb::TopologyCopy()) {}
 };
 
 struct VolumeMask::Tree {
