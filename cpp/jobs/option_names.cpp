@@ -25,6 +25,8 @@ std::string name_of(HeightReference reference) {
   return reference == HeightReference::kGround ? "ground" : "absolute";
 }
 
+std::string name_of(SeenFrom seen) { return seen == SeenFrom::kAny ? "any" : "all"; }
+
 Stand stand_from(const std::string& name) {
   return option_from("stand", name, Stand::kModel, Stand::kGround);
 }
@@ -35,6 +37,10 @@ Combine combine_from(const std::string& name) {
 
 HeightReference height_reference_from(const std::string& name) {
   return option_from("height_reference", name, HeightReference::kGround, HeightReference::kAbsolute);
+}
+
+SeenFrom seen_from(const std::string& name) {
+  return option_from("seen_from", name, SeenFrom::kAny, SeenFrom::kAll);
 }
 
 }  // namespace sightbound

@@ -46,29 +46,7 @@ bool looks_up(const SurfaceFace& face) {
   return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y) > 0;
 }
 
-struct Span {
-  double ground = kNone, highest = kNone;
-};
-
-Span terrain_over(const Surface& surface, double x, double y, std::vector<std::uint32_t>& numbers) {
-  // Solids that are no height fields have undersides; DEMs may hold their corners in either turn.
-  const bool only_tops = surface.sides() == Sides::kSolid && surface.metric() == Metric::kNormal;
-  const Box3& bounds = surface.bounds();
-  surface.faces_near({{x, y, bounds.low.z}, {x, y, bounds.high.z}}, numbers);
-  Span span;
-  for (const std::uint32_t n : numbers) {
-    const std::optional<SurfaceFace> face = surface.face(n);
-    if (!face) continue;
-    const double height = height_over(*face, x, y);
-    if (std::isnan(height)) continue;
-    span.highest = std::isnan(span.highest) ? height : std::max(span.highest, height);
-    if (!only_tops || looks_up(*face))
-      span.ground = std::isnan(span.ground) ? height : std::min(span.ground, height);
-  }
-  return span;
-}
-
-TargetColumn column_of(const Span& span, const TargetLattice& lattice) {
+TargetColumn column_of(const TerrainSpan& span, const TargetLattice& lattice) {
   TargetColumn column;
   column.ground = std::numeric_limits<float>::quiet_NaN();
   if (std::isnan(span.ground)) return column;
@@ -80,6 +58,24 @@ TargetColumn column_of(const Span& span, const TargetLattice& lattice) {
 }
 
 }  // namespace
+
+TerrainSpan terrain_over(const Surface& surface, double x, double y, std::vector<std::uint32_t>& numbers) {
+  // Solids that are no height fields have undersides; DEMs may hold their corners in either turn.
+  const bool only_tops = surface.sides() == Sides::kSolid && surface.metric() == Metric::kNormal;
+  const Box3& bounds = surface.bounds();
+  surface.faces_near({{x, y, bounds.low.z}, {x, y, bounds.high.z}}, numbers);
+  TerrainSpan span;
+  for (const std::uint32_t n : numbers) {
+    const std::optional<SurfaceFace> face = surface.face(n);
+    if (!face) continue;
+    const double height = height_over(*face, x, y);
+    if (std::isnan(height)) continue;
+    span.highest = std::isnan(span.highest) ? height : std::max(span.highest, height);
+    if (!only_tops || looks_up(*face))
+      span.ground = std::isnan(span.ground) ? height : std::min(span.ground, height);
+  }
+  return span;
+}
 
 std::size_t TargetLattice::targets() const {
   return std::transform_reduce(columns.begin(), columns.end(), std::size_t{0}, std::plus<>(),

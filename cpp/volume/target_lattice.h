@@ -7,6 +7,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -51,6 +53,14 @@ struct TargetLattice {
 // Of all fields, exactly.
 bool operator==(const TargetLattice&, const TargetLattice&);
 
+// Heights of the terrain over a plan place: the ground (the lowest face there, of solids the lowest that
+// looks up) and the highest; NaN where there is none.
+struct TerrainSpan {
+  double ground = std::numeric_limits<double>::quiet_NaN(), highest = ground;
+};
+// `numbers` is room to work in.
+TerrainSpan terrain_over(const Surface&, double x, double y, std::vector<std::uint32_t>& numbers);
+
 struct LatticeOptions {
   double spacing_m = 10;        // in plan
   double height_spacing_m = 0;  // 0 = the lesser of spacing_m and a quarter of the ceiling
@@ -58,10 +68,10 @@ struct LatticeOptions {
 };
 
 // Over the whole surface: every layer whose centre is on or above the ground at the column's centre and not
-// more than the ceiling above the highest of the terrain there (a bridge's deck). Ground is the lowest face
-// there, of solids the lowest that looks up. Columns without terrain at their centre ask nothing. The corner
-// is a whole number of spacings from the frame's origin. Advances `progress` by 1 in all. Throws InvalidInput
-// (field, value, allowed range; more than 2^31 - 1 columns), Cancelled.
+// more than the ceiling above the highest of the terrain there (a bridge's deck). Columns without terrain at
+// their centre ask nothing. The corner is a whole number of spacings from the frame's origin. Advances
+// `progress` by 1 in all. Throws InvalidInput (field, value, allowed range; more than 2^31 - 1 columns),
+// Cancelled.
 std::shared_ptr<const TargetLattice> lattice_above(const Surface&, const LatticeOptions&, const Workers&,
                                                    Progress&);
 

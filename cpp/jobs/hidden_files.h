@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A hidden volume as rasters and as a mesh.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "volume/hidden_volume.h"
+
+namespace sightbound {
+
+// Paths; empty = not wanted.
+struct HiddenFiles {
+  std::string lowest_visible_height, thickness, core_thickness;  // GeoTIFF
+  std::string top;                                               // mesh: .ply, .nc, .2dm, .obj, .gpkg
+  std::vector<std::string> creation_options;                     // KEY=VALUE, GDAL's for GTiff
+};
+
+// Rasters (metadata SIGHTBOUND_...) appear together when all are whole, then the mesh. Returns warnings:
+// where nothing is hidden there is no top, and none is written. Throws InvalidInput (no path, one path
+// twice), IoError, Cancelled.
+std::vector<std::string> write_hidden(const HiddenVolume&, const HiddenFiles&, int threads, Progress&);
+
+}  // namespace sightbound

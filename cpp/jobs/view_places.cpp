@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "jobs/view_places.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "io/crs.h"
+#include "jobs/option_names.h"
+#include "volume/target_lattice.h"
+
+namespace sightbound {
+
+namespace {
+
+constexpr int kHalvings = 12;              // of the spacing, until a polygon has a place
+constexpr double kMostSquares = 1e8;       // looked at within a polygon's box
+constexpr double kMeanRadius = 6371008.8;  // of the Earth, as where there is no CRS (earth/georeference.h)
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.10g", value);
+  return text;
+}
+
+std::string name_of(const ViewVolume& view, std::size_t index) {
+  return view.name.empty() ? "View " + std::to_string(index + 1) : "View '" + view.name + "'";
+}
+
+void validate(const ViewVolume& view, const std::string& name) {
+  if (view.outline.empty())
+    throw InvalidInput(name + " has no outline; give one place, or a polygon's corners.");
+  if (view.outline.size() == 2)
+    throw InvalidInput(name + " has two corners; give one place, or at least three corners of a polygon.");
+  for (const Xy& corner : view.outline) {
+    if (!std::isfinite(corner.x) || !std::isfinite(corner.y))
+      throw InvalidInput(name + " has a corner that is not finite.");
+  }
+  for (const double height : {view.height_from, view.height_to}) {
+    if (!(std::abs(height) <= 1e5))
+      throw InvalidInput(name + ": height is " + number(height) + "; allowed are -100000 to 100000 m.");
+  }
+  if (view.height_from > view.height_to) {
+    throw InvalidInput(name + ": the height range begins at " + number(view.height_from) + " m and ends at " +
+                       number(view.height_to) + " m; give the lower one first.");
+  }
+}
+
+// Even-odd rule.
+bool inside(const std::vector<Xyz>& ring, double x, double y) {
+  bool in = false;
+  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+    const Xyz &a = ring[i], &b = ring[j];
+    if ((a.y > y) != (b.y > y) && x < (b.x - a.x) * (y - a.y) / (b.y - a.y) + a.x) in = !in;
+  }
+  return in;
+}
+
+// Middles of the squares of a fixed lattice that lie in the polygon.
+std::vector<Xy> middles_within(const std::vector<Xyz>& ring, double side, const std::string& name) {
+  const auto [west, east] = std::ranges::minmax(ring, {}, &Xyz::x);
+  const auto [south, north] = std::ranges::minmax(ring, {}, &Xyz::y);
+  const double first_i = std::floor(west.x / side), last_i = std::floor(east.x / side);
+  const double first_j = std::floor(south.y / side), last_j = std::floor(north.y / side);
+  if ((last_i - first_i + 1) * (last_j - first_j + 1) > kMostSquares)
+    throw InvalidInput(name + " is too large for view places " + number(side) +
+                       " m apart; give a larger view_spacing.");
+  std::vector<Xy> found;
+  for (double j = first_j; j <= last_j; ++j) {
+    for (double i = first_i; i <= last_i; ++i) {
+      const Xy middle{(i + 0.5) * side, (j + 0.5) * side};
+      if (inside(ring, middle.x, middle.y)) found.push_back(middle);
+    }
+  }
+  return found;
+}
+
+std::vector<Xy> plan_places(const VolumeFrame& frame, const ViewVolume& view, double spacing_m,
+                            const std::string& name) {
+  std::vector<Xyz> ring;
+  for (const Xy& corner : view.outline) ring.push_back(frame.from_crs({corner.x, corner.y, 0}));
+  if (ring.size() == 1) return {{ring[0].x, ring[0].y}};
+  std::vector<Xy> found;
+  for (int n = 0; n < kHalvings && found.empty(); ++n, spacing_m /= 2)
+    found = middles_within(ring, spacing_m, name);
+  if (found.empty())
+    throw InvalidInput(name + " is a polygon without area; give a place or a wider polygon.");
+  return found;
+}
+
+std::vector<double> heights_of(const ViewVolume& view, double spacing_m) {
+  const double range = view.height_to - view.height_from;
+  const int steps = static_cast<int>(std::min(std::ceil(range / spacing_m), 1e6));
+  if (range == 0) return {view.height_from};
+  std::vector<double> heights;
+  for (int n = 0; n <= steps; ++n) heights.push_back(view.height_from + range * n / steps);
+  return heights;
+}
+
+std::string to_json(const ViewVolume& view, HeightReference reference, std::size_t places) {
+  nlohmann::ordered_json json;
+  if (!view.name.empty()) json["name"] = view.name;
+  json["outline"] = nlohmann::ordered_json::array();
+  for (const Xy& corner : view.outline) json["outline"].push_back({corner.x, corner.y});
+  json["height"] = {view.height_from, view.height_to};
+  json["height_reference"] = name_of(reference);
+  json["places"] = places;
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace
+
+ViewPlaces view_places(const Surface& surface, const std::vector<ViewVolume>& views,
+                       HeightReference reference, double spacing_m) {
+  if (views.empty()) throw InvalidInput("views is empty; give at least one place to look from.");
+  if (!(spacing_m > 0 && spacing_m <= 1e6))
+    throw InvalidInput("view_spacing is " + number(spacing_m) +
+                       "; allowed are more than 0 and at most 1000000 m.");
+  ViewPlaces out;
+  std::vector<std::uint32_t> numbers;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const ViewVolume& view = views[v];
+    const std::string name = name_of(view, v);
+    validate(view, name);
+    const std::size_t before = out.places.size();
+    const std::vector<Xy> plan = plan_places(surface.frame(), view, spacing_m, name);
+    const std::vector<double> heights = heights_of(view, spacing_m);
+    std::size_t off = 0;
+    for (const Xy& at : plan) {
+      const TerrainSpan span = terrain_over(surface, at.x, at.y, numbers);
+      if (std::isnan(span.highest)) {
+        ++off;
+        continue;
+      }
+      const double base = reference == HeightReference::kGround ? span.highest : 0;
+      for (const double height : heights) out.places.push_back({at.x, at.y, base + height});
+    }
+    if (out.places.size() == before) {
+      throw InvalidInput(name + " (" + number(view.outline[0].x) + ", " + number(view.outline[0].y) +
+                         ") is not on the terrain of the volume; give places within it, in its CRS.");
+    }
+    if (off > 0) {
+      out.warnings.push_back(name + ": " + std::to_string(off) + " of " + std::to_string(plan.size()) +
+                             " places are not on the terrain and were left out.");
+    }
+    out.as_json.push_back(to_json(view, reference, out.places.size() - before));
+  }
+  return out;
+}
+
+GroundBend ground_bend(const Surface& surface, double refraction) {
+  const double share = (1 - refraction) / 2;
+  const GroundBend of_sphere{share / kMeanRadius, 0, share / kMeanRadius};
+  const VolumeFrame& frame = surface.frame();
+  if (frame.crs_wkt.empty()) return of_sphere;
+  // Three places a kilometre apart, as a DEM of two by two samples has them.
+  const Xyz middle = frame.to_crs(0.5 * (surface.bounds().low + surface.bounds().high));
+  const double step_m = 1000, step = step_m / frame.metres_per_unit;
+  static constexpr std::array<float, 4> kFlat{};
+  const ArrayDem dem({kFlat.data(), 2, 2, std::numeric_limits<double>::quiet_NaN(), 1, nullptr},
+                     Geotransform({middle.x, step, 0, middle.y, 0, -step}), frame.crs_wkt);
+  const Georeference georeference = georeference_of(dem);
+  if (georeference.is_plane()) return of_sphere;
+  const double radian = std::numbers::pi / 180;
+  const LonLat o = georeference.lon_lat(0, 0), x = georeference.lon_lat(1, 0), y = georeference.lon_lat(0, 1);
+  const double sine = std::sin(o.lat * radian), a = georeference.ellipsoid().semi_major_m;
+  const double e2 = georeference.ellipsoid().flattening * (2 - georeference.ellipsoid().flattening);
+  const double across = a / std::sqrt(1 - e2 * sine * sine);        // radii of curvature: east,
+  const double along = across * (1 - e2) / (1 - e2 * sine * sine);  // north
+  const double per_lon =
+      across * std::cos(o.lat * radian) * radian / step_m;  // metres a degree, over the step
+  const double per_lat = along * radian / step_m;
+  // East and north metres of a plan metre along x, and along y (rows run south).
+  const double ex = std::remainder(x.lon - o.lon, 360.0) * per_lon, nx = (x.lat - o.lat) * per_lat;
+  const double ey = -std::remainder(y.lon - o.lon, 360.0) * per_lon, ny = -(y.lat - o.lat) * per_lat;
+  return {share * (ex * ex / across + nx * nx / along), share * (ex * ey / across + nx * ny / along),
+          share * (ey * ey / across + ny * ny / along)};
+}
+
+}  // namespace sightbound

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where observers may be (points, patrol areas with a height range), as places that a volume viewshed looks
+// from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "jobs/viewshed_job.h"
+#include "sight/volume_sight.h"
+#include "volume/surface.h"
+
+namespace sightbound {
+
+struct ViewVolume {
+  std::vector<Xy> outline;                    // CRS; one place, or the corners of a polygon (closed or not)
+  double height_from = 1.7, height_to = 1.7;  // metres, above ground or absolute
+  std::string name;                           // for messages; empty = its number
+};
+
+struct ViewPlaces {
+  std::vector<Xyz> places;           // local metres
+  std::vector<std::string> as_json;  // one a view volume, with all that it was asked with
+  std::vector<std::string> warnings;
+};
+
+// A point is one place, or several above one another, at most `spacing_m` apart, both ends of the height
+// range among them. A polygon has places at the middles of squares of that side (half as large, again and
+// again, until one lies inside). Above ground counts from the highest of the terrain there: who is set on a
+// bridge stands on it. Throws InvalidInput naming view, field, value: no outline, a point off the terrain, a
+// height that is not finite, from above to; a polygon with no place on the terrain.
+ViewPlaces view_places(const Surface&, const std::vector<ViewVolume>&, HeightReference, double spacing_m);
+
+// The bend of the ground under the volume's frame, as the ellipsoid of its CRS has it at the middle of the
+// terrain.
+GroundBend ground_bend(const Surface&, double refraction);
+
+}  // namespace sightbound

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "jobs/volume_viewshed_job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "base/error.h"
+#include "base/memory_budget.h"
+#include "base/parallel.h"
+
+namespace sightbound {
+
+namespace {
+
+constexpr std::size_t kTimedColumns = 1024, kTimedViews = 16;  // to tell how long a line takes
+
+// One job: views placed, targets laid out, memory asked for.
+struct Prepared {
+  ViewPlaces views;
+  std::shared_ptr<const TargetLattice> targets;
+  SightEstimate estimate;
+};
+
+void require_lines(const SightEstimate& estimate, double spacing_m, double most) {
+  if (estimate.lines <= most) return;
+  char text[320];
+  std::snprintf(
+      text, sizeof(text),
+      "most_lines is %.6g, but %.6g lines of sight are needed (%zu view places, %zu targets %.6g m apart). "
+      "Targets %.6g m apart would fit, or a larger view_spacing, or a larger most_lines.",
+      most, estimate.lines, estimate.view_places, estimate.targets, spacing_m,
+      std::ceil(spacing_m * std::sqrt(estimate.lines / most)));  // targets go with 1 / spacing^2
+  throw InvalidInput(text);
+}
+
+Prepared prepare(const ErrorVolume& volume, const std::vector<ViewVolume>& views,
+                 const VolumeSightOptions& options, std::shared_ptr<const TargetLattice> targets) {
+  const double spacing = options.view_spacing != 0 ? options.view_spacing : targets->spacing_m;
+  Prepared job;
+  job.views = view_places(volume.surface(), views, options.height_reference, spacing);
+  job.targets = std::move(targets);
+  job.estimate.view_places = job.views.places.size();
+  job.estimate.targets = job.targets->targets();
+  job.estimate.lines = lines_of(*job.targets, job.views.places.size());
+  require_lines(job.estimate, job.targets->spacing_m, options.most_lines);
+  job.estimate.bytes = HiddenVolumeBuilder::bytes_needed(*job.targets);
+  MemoryBudget(options.memory_budget)
+      .require(job.estimate.bytes,
+               "The hidden volume of " + std::to_string(job.estimate.targets) + " targets",
+               "Give a larger target_spacing or a lower target_ceiling.");
+  return job;
+}
+
+std::shared_ptr<const TargetLattice> lay_out(const ErrorVolume& volume, const VolumeSightOptions& options,
+                                             const Workers& workers, Progress& progress) {
+  progress.begin(0.05, 1);
+  return lattice_above(volume.surface(), options.targets, workers, progress);
+}
+
+void require_positive(double value, const char* field) {
+  if (value > 0) return;  // false for a NaN
+  throw InvalidInput(std::string(field) + " is " + std::to_string(value) + "; it must be more than 0.");
+}
+
+void validate(const VolumeSightOptions& options) {
+  two_sided_quantile(options.confidence);  // refuses what is none
+  require_positive(options.max_distance, "max_distance");
+  require_positive(options.most_lines, "most_lines");
+  if (!(options.refraction >= -1 && options.refraction <= 1))
+    throw InvalidInput("refraction is " + std::to_string(options.refraction) + "; allowed are -1 to 1.");
+}
+
+// The volume made ready for lines.
+class Lines {
+ public:
+  Lines(const ErrorVolume& volume, const VolumeSightOptions& options)
+      : options_(options),
+        rays_(volume),
+        sight_(rays_, options.curvature ? ground_bend(volume.surface(), options.refraction) : GroundBend{}) {}
+
+  HiddenVolume see(const Prepared& job, const Workers& workers, Progress& progress) const {
+    VolumeViewshedOptions used;
+    used.confidence = options_.confidence;
+    used.seen_from = options_.seen_from;
+    used.max_distance_m = std::min(options_.max_distance, used.max_distance_m);
+    used.most_lines = options_.most_lines;
+    HiddenVolume hidden = volume_viewshed(sight_, job.views.places, job.targets, used, workers, progress);
+    hidden.info().error_model = rays_.volume().error_model();
+    hidden.info().observers = job.views.as_json;
+    return hidden;
+  }
+
+  // Seconds that it takes.
+  double time_of(const Prepared& job, const Workers& workers) const {
+    Progress unheard;
+    const auto begin = std::chrono::steady_clock::now();
+    see(job, workers, unheard);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+ private:
+  const VolumeSightOptions& options_;
+  VolumeRays rays_;
+  VolumeSight sight_;
+};
+
+// The same targets, all but some `columns` left out.
+std::shared_ptr<const TargetLattice> sample_of(const TargetLattice& all, std::size_t columns) {
+  auto some = std::make_shared<TargetLattice>(all);
+  const std::size_t step = columns == 0 ? 0 : std::max<std::size_t>(all.columns.size() / columns, 1);
+  for (std::size_t n = 0; n < some->columns.size(); ++n) {
+    // Another place in each stretch, so that samples do not line up.
+    if (step == 0 || n % step != n / step * 7919 % step) some->columns[n].last = some->columns[n].first - 1;
+  }
+  return some;
+}
+
+// From some lines, less what a viewshed without any takes.
+double seconds_of(const Prepared& job, const Lines& lines, const Workers& workers) {
+  Prepared part = job;
+  part.views.places.resize(std::min(part.views.places.size(), kTimedViews));
+  part.targets = sample_of(*job.targets, 0);
+  const double idle = lines.time_of(part, workers);
+  part.targets = sample_of(*job.targets, kTimedColumns);
+  const double asked = lines_of(*part.targets, part.views.places.size());
+  if (asked == 0) return idle;
+  return idle + std::max(lines.time_of(part, workers) - idle, 0.0) * job.estimate.lines / asked;
+}
+
+}  // namespace
+
+SightEstimate estimate_sight(const ErrorVolume& volume, const std::vector<ViewVolume>& views,
+                             const VolumeSightOptions& options, Progress& progress) {
+  validate(options);
+  const Workers workers(options.threads);
+  Prepared job = prepare(volume, views, options, lay_out(volume, options, workers, progress));
+  progress.check();
+  job.estimate.seconds = seconds_of(job, Lines(volume, options), workers);
+  progress.finish();
+  return job.estimate;
+}
+
+HiddenResult run_volume_viewshed(const ErrorVolume& volume, const std::vector<ViewVolume>& views,
+                                 const VolumeSightOptions& options, Progress& progress) {
+  validate(options);
+  const Workers workers(options.threads);
+  Prepared job = prepare(volume, views, options, lay_out(volume, options, workers, progress));
+  HiddenVolume hidden = Lines(volume, options).see(job, workers, progress);
+  return {std::move(hidden), job.estimate, std::move(job.views.warnings)};
+}
+
+Subtraction subtract_observer(const HiddenVolume& hidden, const ErrorVolume& volume,
+                              const std::vector<ViewVolume>& views, const VolumeSightOptions& options,
+                              double height_m, Progress& progress) {
+  validate(options);
+  const VolumeFrame &a = hidden.lattice().frame, &b = volume.surface().frame();
+  if (a.x != b.x || a.y != b.y || a.metres_per_unit != b.metres_per_unit || a.crs_wkt != b.crs_wkt) {
+    throw InvalidInput(
+        "The hidden volume was made with another error volume (it lies elsewhere, or has another CRS); give "
+        "that "
+        "one.");
+  }
+  const HiddenArea before = hidden_area(hidden, height_m);
+  VolumeSightOptions used = options;
+  used.confidence = hidden.info().confidence;
+  const Workers workers(options.threads);
+  Prepared job = prepare(volume, views, used, hidden.shared_lattice());
+  const HiddenVolume seen = Lines(volume, used).see(job, workers, progress);
+  Subtraction out{union_of_seen(hidden, seen), 0, 0, before, {}, job.estimate, std::move(job.views.warnings)};
+  out.after = hidden_area(out.rest, height_m);
+  const VerdictVolumes was = hidden.volumes(), is = out.rest.volumes();
+  out.gained_m3 = is.visible_m3 - was.visible_m3;
+  out.gained_core_m3 = was.hidden_m3 - is.hidden_m3;
+  return out;
+}
+
+}  // namespace sightbound

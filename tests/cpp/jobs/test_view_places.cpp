@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "io/tin_crs.h"
+#include "jobs/view_places.h"
+#include "support/says.h"
+#include "volume/dem_surface.h"
+
+namespace sightbound {
+namespace {
+
+using testing::says;
+
+// A plane that rises by 1 m in 10 m to the east, 21 x 21 samples of 10 m from (x, y) to the north-east.
+std::shared_ptr<const Surface> slope(double x, double y, const std::string& crs_wkt) {
+  DemInput input{.heights = Grid<float>(21, 21),
+                 .error = {},
+                 .geotransform = Geotransform({x - 5, 10, 0, y + 205, 0, -10}),
+                 .crs_wkt = crs_wkt};
+  for (int r = 0; r < 21; ++r) {
+    for (int c = 0; c < 21; ++c) input.heights.at(r, c) = static_cast<float>(c);
+  }
+  input.error.cell_sizes.assign(21, {10, 10});
+  input.error.farthest.assign(21, 7.1);
+  input.error.larger_side_m = 10;
+  return std::make_shared<DemSurface>(std::move(input));
+}
+
+std::string complaint(const std::shared_ptr<const Surface>& surface, const ViewVolume& view,
+                      double spacing = 10) {
+  try {
+    view_places(*surface, {view}, HeightReference::kGround, spacing);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(ViewPlaces, APointStandsOnTheGround) {
+  const auto surface = slope(1000, 2000, "");
+  const ViewPlaces found =
+      view_places(*surface, {{{{1037, 2050}}, 1.5, 1.5, ""}}, HeightReference::kGround, 10);
+  ASSERT_EQ(found.places.size(), 1u);
+  EXPECT_NEAR(found.places[0].x, 37, 1e-9);
+  EXPECT_NEAR(found.places[0].y, 50, 1e-9);
+  EXPECT_NEAR(found.places[0].z, 3.7 + 1.5, 1e-6);
+  const ViewPlaces absolute =
+      view_places(*surface, {{{{1037, 2050}}, 40, 45, "mast"}}, HeightReference::kAbsolute, 2);
+  ASSERT_EQ(absolute.places.size(), 4u);  // both ends, at most 2 m apart
+  EXPECT_EQ(absolute.places.front().z, 40);
+  EXPECT_EQ(absolute.places.back().z, 45);
+  EXPECT_TRUE(says(absolute.as_json[0], R"("name":"mast")"));
+}
+
+TEST(ViewPlaces, APolygonHasPlacesInside) {
+  const auto surface = slope(1000, 2000, "");
+  // A triangle: half of 100 squares of 10 m, less or more on its long side.
+  const ViewVolume triangle{{{1050, 2050}, {1150, 2050}, {1050, 2150}}, 2, 2, ""};
+  const ViewPlaces found = view_places(*surface, {triangle}, HeightReference::kGround, 10);
+  EXPECT_GE(found.places.size(), 45u);
+  EXPECT_LE(found.places.size(), 55u);
+  for (const Xyz& place : found.places) {
+    EXPECT_GT(place.x, 50);
+    EXPECT_GT(place.y, 50);
+    EXPECT_LE(place.x + place.y, 200 + 1e-9);
+    EXPECT_NEAR(place.z, place.x / 10 + 2, 1e-5);
+  }
+  // One that no square's middle lies in.
+  const ViewVolume tiny{{{1051, 2051}, {1052, 2051}, {1051, 2052}}, 2, 2, ""};
+  EXPECT_GE(view_places(*surface, {tiny}, HeightReference::kGround, 10).places.size(), 1u);
+}
+
+TEST(ViewPlaces, PartsOffTheTerrainAreToldOf) {
+  const auto surface = slope(1000, 2000, "");
+  const ViewVolume half{{{1150, 2050}, {1250, 2050}, {1250, 2150}, {1150, 2150}}, 2, 2, ""};
+  const ViewPlaces found = view_places(*surface, {half}, HeightReference::kGround, 10);
+  EXPECT_EQ(found.places.size(), 50u);
+  ASSERT_EQ(found.warnings.size(), 1u);
+  EXPECT_TRUE(says(found.warnings[0], "50 of 100 places are not on the terrain"));
+}
+
+TEST(ViewPlaces, WrongViewsAreNamed) {
+  const auto surface = slope(1000, 2000, "");
+  EXPECT_TRUE(says(complaint(surface, {{}, 1, 1, ""}), "View 1 has no outline"));
+  EXPECT_TRUE(says(complaint(surface, {{{900, 2050}}, 1, 1, "hut"}), "View 'hut' (900, 2050) is not on"));
+  EXPECT_TRUE(says(complaint(surface, {{{1050, 2050}}, 3, 1, ""}), "begins at 3 m and ends at 1 m"));
+  EXPECT_TRUE(says(complaint(surface, {{{1050, 2050}}, std::nan(""), 1, ""}), "height is nan"));
+  EXPECT_TRUE(says(complaint(surface, {{{1050, 2050}, {1060, 2050}}, 1, 1, ""}), "two corners"));
+  EXPECT_TRUE(
+      says(complaint(surface, {{{1050, 2050}, {1060, 2050}, {1070, 2050}}, 1, 1, ""}), "without area"));
+  EXPECT_TRUE(says(complaint(surface, {{{1050, 2050}}, 1, 1, ""}, 0), "view_spacing is 0"));
+}
+
+TEST(GroundBend, IsTheEllipsoids) {
+  // 15 E, 45 N in UTM 33: scale 0.9996, radii 6367.4 km (north) and 6388.8 km (east).
+  const GroundBend bend = ground_bend(*slope(499900, 4982850, crs_from_text("EPSG:32633")), 0);
+  EXPECT_NEAR(bend.drop(1000, 0), 1e6 / (0.9996 * 0.9996) / (2 * 6388838), 1e-6);
+  EXPECT_NEAR(bend.drop(0, 1000), 1e6 / (0.9996 * 0.9996) / (2 * 6367382), 1e-6);
+  EXPECT_NEAR(ground_bend(*slope(499900, 4982850, crs_from_text("EPSG:32633")), 0.13).drop(1000, 0),
+              0.87 * bend.drop(1000, 0), 1e-9);
+  // Without a CRS a sphere.
+  EXPECT_NEAR(ground_bend(*slope(0, 0, ""), 0).drop(600, 800), 1e6 / (2 * 6371008.8), 1e-9);
+}
+
+}  // namespace
+}  // namespace sightbound
