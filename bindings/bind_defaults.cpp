@@ -9,6 +9,7 @@
 #include "error_model/error_model.h"
 #include "jobs/error_surfaces_job.h"
 #include "jobs/option_names.h"
+#include "jobs/volume_viewshed_job.h"
 
 namespace sightbound::python {
 
@@ -24,6 +25,7 @@ py::dict defaults() {
   const Observer observer;
   const ViewshedOptions options;
   const ErrorModel model;
+  const VolumeSightOptions sight;
   return py::dict(
       "observer_height"_a = observer.height, "target_height"_a = observer.target_height,
       "min_distance"_a = observer.min_distance, "max_distance"_a = finite_or_none(observer.max_distance),
@@ -34,7 +36,9 @@ py::dict defaults() {
       "combine"_a = name_of(options.combine), "height_reference"_a = name_of(options.height_reference),
       "see_across_nodata"_a = options.see_across_nodata, "heights"_a = options.heights,
       "horizontal_rmse"_a = model.horizontal_rmse, "geologic_model"_a = name_of(model.geologic_shape),
-      "vertical_unit"_a = "auto", "band"_a = 1, "terrain_table"_a = default_terrain_table());
+      "vertical_unit"_a = "auto", "band"_a = 1, "terrain_table"_a = default_terrain_table(),
+      "target_spacing"_a = sight.targets.spacing_m, "target_ceiling"_a = sight.targets.ceiling_m,
+      "seen_from"_a = name_of(sight.seen_from), "most_lines"_a = sight.most_lines);
 }
 
 }  // namespace

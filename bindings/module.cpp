@@ -23,5 +23,7 @@ PYBIND11_MODULE(_core, m) {
   python::bind_line_of_sight(m);
   python::bind_error_surfaces(m);
   python::bind_tin(m);
+  python::bind_volume(m);
+  python::bind_hidden_volume(m);
   python::bind_defaults(m);
 }

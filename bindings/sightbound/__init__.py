@@ -17,10 +17,13 @@ from .dem import Dem, read_dem
 from .error_estimate import estimate_error
 from .error_model import ErrorModel, terrain_table
 from .error_surfaces import ErrorSurfaces, error_surfaces
+from .hidden_volume import HiddenRasters, HiddenVolume
 from .line_of_sight import LineOfSight, line_of_sight, lines_of_sight
 from .tin import Tin, read_tin, tin_layers
 from .viewshed import viewshed, viewsheds
 from .viewshed_result import ViewshedResult
+from .volume import ErrorVolume
+from .volume_sight import Subtraction, estimate_volume_viewshed, subtract_observer, volume_viewshed
 
 Cancelled = _core.Cancelled
 defaults = _core.defaults
@@ -37,19 +40,26 @@ __all__ = [
     "Dem",
     "ErrorModel",
     "ErrorSurfaces",
+    "ErrorVolume",
+    "HiddenRasters",
+    "HiddenVolume",
     "LineOfSight",
+    "Subtraction",
     "Tin",
     "ViewshedResult",
     "defaults",
     "error_surfaces",
     "estimate_error",
+    "estimate_volume_viewshed",
     "gdal_version",
     "line_of_sight",
     "lines_of_sight",
     "read_dem",
     "read_tin",
+    "subtract_observer",
     "terrain_table",
     "tin_layers",
     "viewshed",
     "viewsheds",
+    "volume_viewshed",
 ]
