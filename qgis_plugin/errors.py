@@ -28,6 +28,18 @@ _PARAMETER_OF = {
     "creation_options": "CREATION_OPTIONS",
     "see_across_nodata": "SEE_ACROSS_NODATA",
     "error_model": "ERROR_MODEL",
+    "target_ceiling": "TARGET_CEILING",
+    "target_spacing": "TARGET_SPACING",
+    "target_height_spacing": "TARGET_HEIGHT_SPACING",
+    "view_height": "OBSERVER_HEIGHT",
+    "view_height_to": "OBSERVER_HEIGHT_TO",
+    "view_spacing": "VIEW_SPACING",
+    "seen_from": "SEEN_FROM",
+    "most_lines": "MOST_LINES",
+    "voxel_m": "VOXEL",
+    "voxel_height": "VOXEL_HEIGHT",
+    "voxel_height_m": "VOXEL_HEIGHT",
+    "largest_confidence": "LARGEST_CONFIDENCE",
 }
 # Arguments that are ordinary words too: they count only where a sentence starts with them.
 _WORD_OF = {
@@ -40,6 +52,9 @@ _WORD_OF = {
     "combine": "COMBINE",
     "stand": "STAND",
     "band": "BAND",
+    "height": "HIDE_HEIGHT",
+    "views": "OBSERVERS",
+    "voxel": "VOXEL",
 }
 # Labels of features hold the name of their layer's parameter.
 _LAYERS = ("OBSERVERS", "OBSERVER", "TARGETS")

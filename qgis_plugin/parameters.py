@@ -83,6 +83,17 @@ def points(name, label, optional=False):
     return QgsProcessingParameterFeatureSource(name, label, kinds, None, optional)
 
 
+def places(name, label):
+    """Points or polygons."""
+    kinds = [QgsProcessing.SourceType.TypeVectorPoint, QgsProcessing.SourceType.TypeVectorPolygon]
+    return QgsProcessingParameterFeatureSource(name, label, kinds)
+
+
+def vdb(name, label):
+    """A volume that one of the algorithms wrote."""
+    return QgsProcessingParameterFile(name, label, QgsProcessingParameterFile.Behavior.File, "vdb")
+
+
 def field(name, label, layer, numeric=False):
     kinds = QgsProcessingParameterField.DataType
     kind = kinds.Numeric if numeric else kinds.Any
@@ -225,25 +236,39 @@ def vertical_unit_parameter():
     return advanced(choice("VERTICAL_UNIT", tr("Vertical unit of the DEM"), words, default("vertical_unit")))
 
 
+def _height_reference():
+    words = ["ground", "absolute"]
+    return advanced(choice("HEIGHT_REFERENCE", tr("Heights are above"), words, default("height_reference")))
+
+
+def _earth():
+    curvature = QgsProcessingParameterBoolean(
+        "CURVATURE", tr("Curvature of the Earth"), default("curvature"), True
+    )
+    return [
+        advanced(number("REFRACTION", tr("Refraction coefficient"), default("refraction"), -1.0, 1.0)),
+        advanced(curvature),
+    ]
+
+
+def volume_sight_block():
+    """How sight lines through an error volume are computed, and how many at most."""
+    most = number("MOST_LINES", tr("Largest number of lines of sight"), default("most_lines"), 1.0)
+    return [_height_reference(), *_earth(), advanced(most)]
+
+
+def hide_height_parameter():
+    label = tr("Height of what is to be hidden, in metres")
+    return number("HIDE_HEIGHT", label, 1.8, 0.001, optional=False)
+
+
 def sight_block():
     """How sight lines are computed."""
     return [
-        advanced(
-            choice(
-                "HEIGHT_REFERENCE",
-                tr("Heights are above"),
-                ["ground", "absolute"],
-                default("height_reference"),
-            )
-        ),
+        _height_reference(),
         advanced(raster("GROUND", tr("Ground under a surface model, for heights above it"), True)),
         vertical_unit_parameter(),
-        advanced(number("REFRACTION", tr("Refraction coefficient"), default("refraction"), -1.0, 1.0)),
-        advanced(
-            QgsProcessingParameterBoolean(
-                "CURVATURE", tr("Curvature of the Earth"), default("curvature"), True
-            )
-        ),
+        *_earth(),
         advanced(choice("STAND", tr("Eye and target stand on"), ["model", "ground"], default("stand"))),
         advanced(
             QgsProcessingParameterBoolean(
@@ -263,8 +288,11 @@ def run_block():
         "CREATION_OPTIONS", tr("Creation options of the GeoTIFFs"), "", False, True
     )
     options.setMetadata({"widget_wrapper": _raster_options_widget()})
-    threads = number("THREADS", tr("Threads (empty: all cores)"), None, 1, None, integer=True)
-    return [advanced(threads), advanced(options)]
+    return [threads_parameter(), advanced(options)]
+
+
+def threads_parameter():
+    return advanced(number("THREADS", tr("Threads (empty: all cores)"), None, 1, None, integer=True))
 
 
 def _raster_options_widget():

@@ -7,11 +7,24 @@ from qgis.core import QgsProcessingModelAlgorithm, QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
 from . import core
+from .algorithms.build_error_volume import BuildErrorVolume
 from .algorithms.confidence_viewshed import ConfidenceViewshed
 from .algorithms.error_surfaces import ErrorSurfaces
 from .algorithms.line_of_sight_profile import LineOfSightProfile
+from .algorithms.subtract_observer import SubtractObserver
+from .algorithms.volume_to_raster import VolumeToRaster
+from .algorithms.volume_viewshed import VolumeViewshed
 
 _FOLDER = Path(__file__).parent
+_ALGORITHMS = (
+    ConfidenceViewshed,
+    ErrorSurfaces,
+    LineOfSightProfile,
+    BuildErrorVolume,
+    VolumeViewshed,
+    SubtractObserver,
+    VolumeToRaster,
+)
 
 
 class SightboundProvider(QgsProcessingProvider):
@@ -37,7 +50,7 @@ class SightboundProvider(QgsProcessingProvider):
         return str(_FOLDER / "icons" / "sightbound.svg")
 
     def loadAlgorithms(self):
-        for algorithm in (ConfidenceViewshed, ErrorSurfaces, LineOfSightProfile):
+        for algorithm in _ALGORITHMS:
             self.addAlgorithm(algorithm())
         for path in sorted((_FOLDER / "models").glob("*.model3")):
             model = QgsProcessingModelAlgorithm()

@@ -111,7 +111,7 @@ def test_lines_and_critical_places_are_styled(loaded, dem, observers):
         assert [one.value() for one in renderer.categories()] == ["visible", "uncertain", "hidden", "unknown"]
 
 
-@pytest.mark.parametrize("style", ["confidence", "verdict", "count", "height", "sigma", "surface"])
+@pytest.mark.parametrize("style", ["confidence", "verdict", "count", "height", "sigma", "surface", "thickness"])
 def test_raster_styles_load_by_themselves(provider, dem, style):
     from sightbound_qgis.styling import style_path
 

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the algorithms on hidden volumes write and tell: rasters, the fog as a mesh, areas and volumes."""
+
+from qgis.core import (
+    QgsProcessingContext,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingParameterRasterDestination,
+    QgsProcessingUtils,
+)
+
+from .errors import core_errors
+from .feedback import Progress
+from .styling import StyleOnLoad, style_when_loaded
+from .text import tr
+from .values import given
+
+# output, label, argument of write, style
+RASTERS = (
+    ("OUTPUT_HEIGHT", "Lowest visible height (m)", "height", "height"),
+    ("OUTPUT_THICKNESS", "Thickness of the hidden layer (m)", "thickness", "thickness"),
+    ("OUTPUT_CORE", "Thickness of the surely hidden core (m)", "core_thickness", "thickness"),
+)
+TOP = "OUTPUT_TOP"
+NUMBERS = (
+    ("AREA_HIDDEN", "Area that hides a thing of the height asked (m²)"),
+    ("AREA_CORE", "Area that surely hides it (m²)"),
+    ("VOLUME_HIDDEN", "Volume that is not surely visible (m³)"),
+    ("VOLUME_CORE", "Volume that is surely hidden (m³)"),
+    ("VOLUME_VISIBLE", "Volume that is surely visible (m³)"),
+)
+
+
+def add_outputs(algorithm, by_default=True):
+    """Rasters, mesh and numbers, all optional."""
+    for name, label, *_ in RASTERS:
+        algorithm.add(QgsProcessingParameterRasterDestination(name, tr(label)), True, by_default)
+    fog = QgsProcessingParameterFileDestination(TOP, tr("Top of the hidden volume (mesh)"), "PLY (*.ply)")
+    algorithm.add(fog, True, by_default)
+    for name, label in NUMBERS:
+        algorithm.addOutput(QgsProcessingOutputNumber(name, tr(label)))
+
+
+def write_outputs(algorithm, hidden, parameters, context, feedback, first=90.0):
+    """Writes what was asked for and has it loaded and styled; the results by output."""
+    wanted = [row for row in RASTERS if given(parameters, row[0])]
+    results = {row[0]: algorithm.parameterAsOutputLayer(parameters, row[0], context) for row in wanted}
+    arguments = {row[2]: results[row[0]] for row in wanted}
+    if given(parameters, TOP):
+        results[TOP] = arguments["top"] = algorithm.parameterAsFileOutput(parameters, TOP, context)
+    results.update(_told(hidden, algorithm.parameterAsDouble(parameters, "HIDE_HEIGHT", context), feedback))
+    if not arguments:
+        return results
+    with core_errors(paths={results[name]: name for name in results if isinstance(results[name], str)}):
+        warnings = hidden.write(
+            **arguments,
+            creation_options=algorithm.options,
+            threads=algorithm.threads(parameters, context),
+            progress=Progress(feedback, first, 100.0),
+        )
+    for warning in warnings:
+        feedback.pushWarning(warning)
+    for name, _, _, style in wanted:
+        style_when_loaded(context, results[name], style, 0.98)
+    if TOP in results and not results["VOLUME_HIDDEN"] > 0:
+        del results[TOP]  # there is no top
+    elif TOP in results:
+        _load_fog(results[TOP], context)
+    return results
+
+
+def _told(hidden, height, feedback):
+    with core_errors("HIDE_HEIGHT"):
+        area = hidden.area(height)
+    volumes = hidden.volumes()
+    found = {
+        "AREA_HIDDEN": area["hidden_m2"],
+        "AREA_CORE": area["core_m2"],
+        "VOLUME_HIDDEN": volumes["hidden_m3"] + volumes["uncertain_m3"],
+        "VOLUME_CORE": volumes["hidden_m3"],
+        "VOLUME_VISIBLE": volumes["visible_m3"],
+    }
+    for name, label in NUMBERS:
+        feedback.pushInfo(f"{tr(label)}: {found[name]:.6g}")
+    return found
+
+
+def _load_fog(path, context):
+    """Adds the mesh to the project when the algorithm is done, with a style for the map and one for the 3D view."""
+    if context.project() is None:
+        return
+    name = tr("Hidden volume")
+    hint = QgsProcessingUtils.LayerHint.Mesh
+    details = QgsProcessingContext.LayerDetails(name, context.project(), TOP, hint)
+    details.setPostProcessor(StyleOnLoad("fog", 0.0))
+    context.addLayerToLoadOnCompletion(path, details)
