@@ -39,27 +39,38 @@ class ColumnCorners {
   template <class F>
   void visit(const FaceInPlan& face, F& f) const {
     lattice_points(face, f);
+    std::array<Corner, 3> corners;
     for (std::size_t c = 0; c < 3; ++c) {
-      const Xyz &a = face.corner(c), &b = face.corner((c + 1) % 3);
-      const double sa = face.sampling(c), sb = face.sampling((c + 1) % 3);
-      const double ax = a.x * per_voxel_ - i0_, ay = a.y * per_voxel_ - j0_;
-      const double bx = b.x * per_voxel_ - i0_, by = b.y * per_voxel_ - j0_;
-      enter(ax, ay, between(a.z, a.z, sa, sa, 0), f);
-      crossings(ax, ay, bx, by, [&](int line, double along, double t) {
-        enter(line, along, between(a.z, b.z, sa, sb, t), f);
-      });
-      crossings(ay, ax, by, bx, [&](int line, double along, double t) {
-        enter(along, line, between(a.z, b.z, sa, sb, t), f);
-      });
+      const Xyz& p = face.corner(c);
+      corners[c] = {p.x * per_voxel_ - i0_, p.y * per_voxel_ - j0_, p.z, face.sampling(c)};
+      vertex(corners[c], f);
     }
+    for (std::size_t c = 0; c < 3; ++c) edge(corners[c], corners[(c + 1) % 3], f);
+  }
+
+  // A corner of faces: x and y in voxels from the first column.
+  struct Corner {
+    double x, y, height, sampling;
+  };
+  template <class F>
+  void vertex(const Corner& c, F& f) const {
+    enter(c.x, c.y, between(c, c, 0), f);
+  }
+  // Where an edge crosses lines of the lattice.
+  template <class F>
+  void edge(const Corner& a, const Corner& b, F& f) const {
+    crossings(a.x, a.y, b.x, b.y,
+              [&](int line, double along, double t) { enter(line, along, between(a, b, t), f); });
+    crossings(a.y, a.x, b.y, b.x,
+              [&](int line, double along, double t) { enter(along, line, between(a, b, t), f); });
   }
 
  private:
   static constexpr double kTouch = 1e-9;  // voxels
 
-  static OverlayCorner between(double ha, double hb, double sa, double sb, double t) {
-    const double sigma = std::max(sa + t * (sb - sa), kLeastSigma);
-    return {ha + t * (hb - ha), sigma, sigma};
+  static OverlayCorner between(const Corner& a, const Corner& b, double t) {
+    const double sigma = std::max(a.sampling + t * (b.sampling - a.sampling), kLeastSigma);
+    return {a.height + t * (b.height - a.height), sigma, sigma};
   }
   template <class F>
   static void hand_out(int i_first, int i_last, int j_first, int j_last, const OverlayCorner& corner, F& f) {
@@ -99,8 +110,9 @@ class ColumnCorners {
   static void crossings(double a, double across_a, double b, double across_b, const F& f) {
     if (a == b) return;
     const double low = std::max(std::min(a, b), 0.0), high = std::min(std::max(a, b), 8.0);
-    if (low > high) return;
-    for (int line = static_cast<int>(std::ceil(low)); line <= high; ++line) {
+    if (low > high || std::max(across_a, across_b) < -kTouch || std::min(across_a, across_b) > 8 + kTouch)
+      return;
+    for (int line = ceil_int(low); line <= high; ++line) {
       const double t = (line - a) / (b - a);
       f(line, across_a + t * (across_b - across_a), t);
     }
@@ -108,12 +120,8 @@ class ColumnCorners {
 
   template <class F>
   void lattice_points(const FaceInPlan& face, F& f) const {
-    const auto first = [](double place) {
-      return static_cast<int>(std::ceil(std::clamp(place - kTouch, 0.0, 9.0)));
-    };
-    const auto last = [](double place) {
-      return static_cast<int>(std::floor(std::clamp(place + kTouch, -1.0, 8.0)));
-    };
+    const auto first = [](double place) { return ceil_int(std::clamp(place - kTouch, 0.0, 9.0)); };
+    const auto last = [](double place) { return floor_int(std::clamp(place + kTouch, -1.0, 8.0)); };
     const int i_first = first(face.x0() * per_voxel_ - i0_), i_last = last(face.x1() * per_voxel_ - i0_);
     const int j_first = first(face.y0() * per_voxel_ - j0_), j_last = last(face.y1() * per_voxel_ - j0_);
     for (int i = i_first; i <= i_last; ++i) {

@@ -25,6 +25,8 @@ class ColumnFaces {
   int blocks_across() const { return (cols_ + 127) / 128; }
   int blocks_down() const { return (rows_ + 127) / 128; }
   double voxel_m() const { return voxel_m_; }
+  // The surface, when it is a DEM.
+  const DemSurface* dem() const { return dem_; }
 
   // The faces of one block, sorted into its 16 x 16 squares of 8 x 8 columns.
   class Block {

@@ -10,6 +10,7 @@
 #include "volume/column_corners.h"
 #include "volume/column_faces.h"
 #include "volume/column_overlay.h"
+#include "volume/dem_corners.h"
 #include "volume/vdb_block.h"
 #include "volume/vdb_fill.h"
 
@@ -32,6 +33,14 @@ class LeafColumns {
   // f(column, corner), and f(lattice) for those on lattice points where these come together.
   template <class F>
   void visit(int i8, int j8, F& f) {
+    if (faces_.dem() != nullptr && !surface_.has_between()) {
+      f.clear();
+      if (dem_corners(*faces_.dem(), faces_.voxel_m(), 8 * i8, 8 * j8, lattice_, f)) {
+        f(lattice_);
+        area_.fill(faces_.voxel_m() * faces_.voxel_m());
+        return;
+      }
+    }
     block_.near(i8, j8, numbers_);
     ready_.clear();
     bool plain = true;

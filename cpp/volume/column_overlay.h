@@ -27,6 +27,16 @@ inline constexpr double kHeightSlack = 1e-6;
 // Distances likewise, relative and in metres.
 inline constexpr double kDistanceSlack = 1e-9;
 
+// Floor and ceiling of what fits an int; std::floor is a call on the plainest processors.
+inline int floor_int(double value) {
+  const int i = static_cast<int>(value);
+  return i - (static_cast<double>(i) > value);
+}
+inline int ceil_int(double value) {
+  const int i = static_cast<int>(value);
+  return i + (static_cast<double>(i) < value);
+}
+
 struct OverlayCorner {
   double height = 0, sigma_low = 0, sigma_high = 0;  // metres
 };

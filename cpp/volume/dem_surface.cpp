@@ -113,6 +113,19 @@ Window DemSurface::squares_near(double x0, double y0, double x1, double y1) cons
   return {first_col, first_row, std::max(last_col - first_col + 1, 0), std::max(last_row - first_row + 1, 0)};
 }
 
+bool DemSurface::spans(double x0, double y0, double x1, double y1) const {
+  for (const double x : {x0, x1}) {
+    for (const double y : {y0, y1}) {
+      const double dx = x - origin_.x, dy = y - origin_.y;
+      const double col = to_raster_[0] * dx + to_raster_[1] * dy,
+                   row = to_raster_[2] * dx + to_raster_[3] * dy;
+      if (!(col >= -kTouch && row >= -kTouch && col <= cols() - 1 + kTouch && row <= rows() - 1 + kTouch))
+        return false;
+    }
+  }
+  return true;
+}
+
 void DemSurface::faces_near(const Box3& box, std::vector<std::uint32_t>& found) const {
   found.clear();
   const Window squares = squares_near(box.low.x, box.low.y, box.high.x, box.high.y);

@@ -34,6 +34,13 @@ class DemSurface final : public Surface {
 
   // Squares (their upper left samples) that a plan box may touch; may be empty.
   Window squares_near(double x0, double y0, double x1, double y1) const;
+  // Does the raster reach over the whole box (holes or not)?
+  bool spans(double x0, double y0, double x1, double y1) const;
+  // Raster coordinates of a plan place, and the step in them that a step in the plan makes.
+  Xy to_raster(double x, double y) const { return raster_step(x - origin_.x, y - origin_.y); }
+  Xy raster_step(double x, double y) const {
+    return {to_raster_[0] * x + to_raster_[1] * y, to_raster_[2] * x + to_raster_[3] * y};
+  }
   // Plan place of a sample, which need not exist.
   Xy place_of(double col, double row) const {
     return {origin_.x + col * col_step_.x + row * row_step_.x,
