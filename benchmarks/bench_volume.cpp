@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// bench_volume DEM (covers|bounds) (columns|faces) sigma voxel [variation [threads]]
+// bench_volume DEM (covers|bounds) (columns|faces|normals) sigma voxel [variation [threads]]
 //
 // One line: seconds to build, and the process's peak memory less what it held before. Columns read the DEM's
 // grid, faces a TIN made of it. benchmarks/volume.sh runs the lot.
@@ -29,16 +29,17 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-std::shared_ptr<const Surface> surface_of(const DemSource& source, bool faces, double sigma,
+std::shared_ptr<const Surface> surface_of(const DemSource& source, const std::string& how, double sigma,
                                           double variation) {
   Progress progress;
-  if (faces) {
+  if (how != "columns") {
+    const Metric metric = how == "faces" ? Metric::kVertical : Metric::kNormal;
     Tin tin = regular_tin(source, 1, MemoryBudget(), progress).tin;
     ErrorModel model;
     model.vertical_rmse = sigma;
     model.geologic_variation = variation;
-    TinError error = resolve_tin_error(tin, model, Metric::kVertical);
-    return std::make_shared<TinSurface>(std::move(tin), std::move(error), Metric::kVertical);
+    TinError error = resolve_tin_error(tin, model, metric);
+    return std::make_shared<TinSurface>(std::move(tin), std::move(error), metric);
   }
   DemInput input{.heights = source.read(source.window(), progress),
                  .error = {},
@@ -55,15 +56,16 @@ std::shared_ptr<const Surface> surface_of(const DemSource& source, bool faces, d
 
 int run(int count, char** words) {
   if (count < 6) {
-    std::fprintf(stderr,
-                 "bench_volume DEM (covers|bounds) (columns|faces) sigma voxel [variation [threads]]\n");
+    std::fprintf(
+        stderr,
+        "bench_volume DEM (covers|bounds) (columns|faces|normals) sigma voxel [variation [threads]]\n");
     return 2;
   }
   const std::string what = words[2], how = words[3];
   const double sigma = std::atof(words[4]), voxel = std::atof(words[5]),
                variation = count > 6 ? std::atof(words[6]) : 0;
   const auto source = open_dem(words[1]);
-  const std::shared_ptr<const Surface> surface = surface_of(*source, how == "faces", sigma, variation);
+  const std::shared_ptr<const Surface> surface = surface_of(*source, how, sigma, variation);
   VolumeOptions options;
   options.voxel_m = voxel;
   options.threads = count > 7 ? std::atoi(words[7]) : 0;
