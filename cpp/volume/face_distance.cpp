@@ -45,6 +45,9 @@ FaceDistances::FaceDistances(const TinSurface& surface)
     ready.amplitude = face.amplitude;
     const Xyz normal = cross(face.corner[1] - face.corner[0], face.corner[2] - face.corner[0]);
     ready.normal = (1 / length(normal)) * normal;
+    ready.middle = (1.0 / 3) * (face.corner[0] + face.corner[1] + face.corner[2]);
+    for (const Xyz& corner : face.corner)
+      ready.radius = std::max(ready.radius, norm(corner - ready.middle) + kHeightSlack);
     for (std::size_t i = 0; i < 3; ++i) {
       const Xyz edge = face.corner[(i + 1) % 3] - face.corner[i];
       ready.length[i] = length(edge);
@@ -113,7 +116,7 @@ FaceDistances::Projected FaceDistances::project(const Ready& face, const BoxOf& 
     inside = inside && p.out[i] <= 0;
   }
   p.closest = inside ? box.centre - p.height * face.normal : closest_on(face.corner, box.centre);
-  p.aside = inside ? 0 : length(p.closest - (box.centre - p.height * face.normal));
+  p.aside = inside ? 0 : norm(p.closest - (box.centre - p.height * face.normal));
   return p;
 }
 
@@ -121,7 +124,7 @@ FaceDistances::Distance FaceDistances::distance(std::size_t number, const BoxOf&
   const Ready& face = faces_[number];
   const Projected p = project(face, box);
   const double off = std::abs(p.height);
-  const double whole = std::sqrt(off * off + p.aside * p.aside), half = length(box.half);
+  const double whole = std::sqrt(off * off + p.aside * p.aside), half = box.radius;
   const double above = std::max(off - p.reach, 0.0), beside = std::max(p.aside - p.radius, 0.0);
   Distance d;
   d.nearest = std::max({whole - half, std::sqrt(above * above + beside * beside), 0.0});
@@ -154,7 +157,7 @@ RatioBounds FaceDistances::bounds(std::size_t number, const BoxOf& box, double f
   double sigma_high = std::min(sampling + spread, largest_of(face.sampling));
   if (face.amplitude_high > 0) {
     double d = std::numeric_limits<double>::infinity();
-    for (const Xyz& corner : face.corner) d = std::min(d, length(p.closest - corner));
+    for (const Xyz& corner : face.corner) d = std::min(d, norm(p.closest - corner));
     const double amplitude = at_closest(face.amplitude), change = face.amplitude_rate * p.radius;
     const double amplitude_low = std::max(amplitude - change, face.amplitude_low);
     const double amplitude_high = std::min(amplitude + change, face.amplitude_high);
@@ -177,7 +180,7 @@ RatioBounds FaceDistances::bounds(std::size_t number, const BoxOf& box, double f
       return;
     }
     const double middle = dot(normal, box.centre - place),
-                 reach = support(box.half, normal) + slack * length(normal);
+                 reach = support(box.half, normal) + slack * norm(normal);
     if (middle + reach >= 0) {
       above = true;
       top = std::max(top, is_plane ? std::min(middle + reach, furthest) : furthest);
@@ -200,7 +203,7 @@ RatioBounds FaceDistances::bounds(std::size_t number, const BoxOf& box, double f
   const double off = std::abs(p.height), whole = std::sqrt(off * off + p.aside * p.aside);
   const double beside = std::max(p.aside - p.radius, 0.0), clear = std::max(off - p.reach, 0.0);
   const double nearest =
-      std::max({whole - length(box.half), std::sqrt(clear * clear + beside * beside), 0.0}) - slack;
+      std::max({whole - box.radius, std::sqrt(clear * clear + beside * beside), 0.0}) - slack;
   const double near = std::max(nearest, 0.0);
   RatioBounds k{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), ambiguous};
   if (above) k.enlarge({near / sigma_high, std::max(top + slack, near) / sigma_low, false});
@@ -210,7 +213,7 @@ RatioBounds FaceDistances::bounds(std::size_t number, const BoxOf& box, double f
 
 int FaceDistances::side(std::size_t number, const Xyz& place) const {
   const Ready& face = faces_[number];
-  const Projected p = project(face, {place, {}});
+  const Projected p = project(face, {place, {}, 0});
   Xyz normal = face.normal;
   Xyz foot = face.corner[0];
   constexpr double kSame = 1e-9;  // metres

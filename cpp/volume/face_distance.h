@@ -35,6 +35,7 @@ struct RatioBounds {
 
 struct BoxOf {
   Xyz centre, half;
+  double radius;  // half the diagonal
 };
 
 // The faces of a TIN with the normals of their parts. 250 bytes a face.
@@ -49,6 +50,12 @@ class FaceDistances {
   };
   Distance distance(std::size_t face, const BoxOf& box) const;
 
+  // No place of the box is nearer to the face than this; cheap.
+  double at_least(std::size_t face, const BoxOf& box) const {
+    const Ready& f = faces_[face];
+    return norm(box.centre - f.middle) - f.radius - box.radius;
+  }
+
   // Bounds of k over those places of the box that have their nearest part on this face, none further than
   // `furthest`.
   RatioBounds bounds(std::size_t face, const BoxOf& box, double furthest) const;
@@ -62,7 +69,9 @@ class FaceDistances {
  private:
   struct Ready {
     std::array<Xyz, 3> corner;
-    Xyz normal;                         // unit
+    Xyz normal;  // unit
+    Xyz middle;  // of a ball that holds the face
+    double radius = 0;
     std::array<Xyz, 3> along, outward;  // of edge i from corner i: unit vectors in the plane
     std::array<double, 3> length;
     std::array<Xyz, 3> edge_normal, corner_normal;  // m; 0 at a border

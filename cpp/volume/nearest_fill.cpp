@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "volume/column_overlay.h"
@@ -41,7 +42,7 @@ BitTree leaves_in_reach(const TinSurface& surface, const FaceDistances& distance
       for (int j = js[0]; j <= js[1]; ++j) {
         for (int k = ks[0]; k <= ks[1]; ++k) {
           const Xyz centre{i * leaf.x + half.x, j * leaf.y + half.y, k * leaf.z + half.z};
-          if (length(closest_on(p, centre) - centre) <= reach + diagonal) to.setValueOn({i, j, k});
+          if (norm(closest_on(p, centre) - centre) <= reach + diagonal) to.setValueOn({i, j, k});
         }
       }
     }
@@ -66,7 +67,7 @@ class LeafRefiner {
     const BoxOf box = box_of({0, 0, 0}, 8);
     // Whatever is nearest to some place of the leaf is no further from its centre than the nearest there plus
     // its diagonal.
-    const double most = surface_.closest(box.centre).distance + 2 * length(box.half) + kHeightSlack;
+    const double most = surface_.closest(box.centre).distance + 2 * box.radius + kHeightSlack;
     std::vector<std::uint32_t>& found = levels_[0];
     found.clear();
     surface_.boxes().visit([&](const Box3& node) { return BoxTree::distance(node, box.centre) <= most; },
@@ -81,28 +82,33 @@ class LeafRefiner {
     const Xyz half{voxels * size_.side / 2, voxels * size_.side / 2, voxels * size_.height / 2};
     return {{(origin.x() + from[0]) * size_.side + half.x, (origin.y() + from[1]) * size_.side + half.y,
              (origin.z() + from[2]) * size_.height + half.z},
-            half};
+            half,
+            norm(half)};
   }
 
   // The box of voxels from `from`, whose nearest faces are among levels_[level].
   void divide(const std::array<int, 3>& from, int voxels, std::size_t level) {
     const BoxOf box = box_of(from, voxels);
     double furthest = std::numeric_limits<double>::infinity();
-    nearest_.clear();
+    std::size_t best =
+        0;  // the face whose furthest place is nearest: first in the lists, so that bounds are tight at once
+    near_.clear();
     for (const std::uint32_t face : levels_[level]) {
+      if (distances_.at_least(face, box) > furthest + kHeightSlack) continue;
       const FaceDistances::Distance d = distances_.distance(face, box);
+      if (d.furthest < furthest) best = near_.size();
       furthest = std::min(furthest, d.furthest);
-      nearest_.push_back(d.nearest);
+      near_.push_back({face, d.nearest});
     }
     furthest += kHeightSlack;
+    std::swap(near_[0], near_[best]);
     std::vector<std::uint32_t>& kept = levels_[level + 1];
     kept.clear();
     bool in_reach = false;
-    for (std::size_t n = 0; n < nearest_.size(); ++n) {
-      if (nearest_[n] > furthest) continue;
-      const std::uint32_t face = levels_[level][n];
+    for (const auto& [face, nearest] : near_) {
+      if (nearest > furthest) continue;
       kept.push_back(face);
-      in_reach = in_reach || nearest_[n] <= ratio_ * distances_.largest_sigma(face) + kHeightSlack;
+      in_reach = in_reach || nearest <= ratio_ * distances_.largest_sigma(face) + kHeightSlack;
     }
     if (!in_reach) return;
     if (voxels == 1) {
@@ -138,8 +144,8 @@ class LeafRefiner {
   double ratio_, beyond_;
   RatioLeaf* leaf_ = nullptr;
   BitLeaf* ambiguous_ = nullptr;
-  std::array<std::vector<std::uint32_t>, 5> levels_;  // faces by depth: 8, 4, 2, 1 voxels
-  std::vector<double> nearest_;
+  std::array<std::vector<std::uint32_t>, 5> levels_;    // faces by depth: 8, 4, 2, 1 voxels
+  std::vector<std::pair<std::uint32_t, double>> near_;  // face, least distance
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "volume/box_tree.h"
 #include "volume/surface.h"
 #include "volume/tin_error.h"
+#include "volume/triangle.h"
 
 namespace sightbound {
 
@@ -50,8 +51,5 @@ class TinSurface final : public Surface {
   mutable std::once_flag indexed_;
   mutable BoxTree boxes_;
 };
-
-// Of a triangle.
-Xyz closest_on(const std::array<Xyz, 3>& triangle, const Xyz& place);
 
 }  // namespace sightbound
