@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// bench_volume DEM (covers|bounds) (columns|faces|normals) sigma voxel [variation [threads]]
+// bench_volume DEM (covers|bounds|file) (columns|faces|normals) sigma voxel [variation [threads]]
 //
 // One line: seconds to build, and the process's peak memory less what it held before. Columns read the DEM's
 // grid, faces a TIN made of it. benchmarks/volume.sh runs the lot.
@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -58,7 +59,7 @@ int run(int count, char** words) {
   if (count < 6) {
     std::fprintf(
         stderr,
-        "bench_volume DEM (covers|bounds) (columns|faces|normals) sigma voxel [variation [threads]]\n");
+        "bench_volume DEM (covers|bounds|file) (columns|faces|normals) sigma voxel [variation [threads]]\n");
     return 2;
   }
   const std::string what = words[2], how = words[3];
@@ -95,6 +96,17 @@ int run(int count, char** words) {
       how.c_str(), sigma, voxel, took, peak_mib(), peak_mib() - before,
       static_cast<double>(volume.report().bytes) / 1048576, static_cast<double>(need.bytes) / 1048576,
       volume.report().voxels, need.voxels);
+  if (what == "file") {
+    const std::string path = std::string(words[1]) + ".vdb";
+    const double built = seconds();
+    volume.save(path, progress);
+    const double written = seconds();
+    const ErrorVolume again = ErrorVolume::open(path, progress);
+    std::printf("  written in %.2f s (%.0f MiB), opened in %.2f s, peak %.0f MiB\n", written - built,
+                static_cast<double>(std::filesystem::file_size(path)) / 1048576, seconds() - written,
+                peak_mib());
+    std::filesystem::remove(path);
+  }
   return 0;
 }
 
