@@ -3,11 +3,11 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string_view>
 
 #include "base/error.h"
+#include "base/number_text.h"
 
 namespace sightbound {
 
@@ -72,13 +72,6 @@ std::optional<double> unit_from_band(const std::string& text) {
 
 bool same(double a, double b) { return std::abs(a - b) <= 1e-9 * std::abs(a); }
 
-// 0.1 mm in a kilometre is what tells the two feet apart.
-std::string metres_text(double metres) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.10g", metres);
-  return text.data();
-}
-
 bool is_foot(double metres) { return metres > 0.3 && metres < 0.31; }
 bool is_packing(double metres) { return metres < 0.3 || metres > 1.1; }
 
@@ -113,10 +106,10 @@ VerticalScale choose_vertical_unit(VerticalUnit asked, const CrsUnits& crs, cons
   if (asked != VerticalUnit::kAuto) {
     scale.metres_per_unit = metres_per(asked);
     if (crs.vertical_m && !same(*crs.vertical_m, scale.metres_per_unit)) {
-      say("Vertical unit set by the user (" + metres_text(scale.metres_per_unit) +
+      say("Vertical unit set by the user (" + number_text(scale.metres_per_unit) +
           " m) against the vertical CRS (" + crs.vertical_name + ").");
     } else if (!same(scale.metres_per_unit, 1)) {
-      say("Heights converted to metres (1 unit = " + metres_text(scale.metres_per_unit) +
+      say("Heights converted to metres (1 unit = " + number_text(scale.metres_per_unit) +
           " m, set by the user).");
     }
     return scale;
@@ -124,7 +117,7 @@ VerticalScale choose_vertical_unit(VerticalUnit asked, const CrsUnits& crs, cons
   if (crs.vertical_m && !(band && is_packing(*band))) {
     scale.metres_per_unit = *crs.vertical_m;
     if (!same(scale.metres_per_unit, 1)) {
-      say("Heights converted to metres (1 unit = " + metres_text(scale.metres_per_unit) +
+      say("Heights converted to metres (1 unit = " + number_text(scale.metres_per_unit) +
           " m: the vertical CRS is in " + crs.vertical_name + ").");
     }
     if (band && !same(*band, scale.metres_per_unit)) {
@@ -136,7 +129,7 @@ VerticalScale choose_vertical_unit(VerticalUnit asked, const CrsUnits& crs, cons
   if (band) {
     scale.metres_per_unit = *band;
     if (!same(*band, 1)) {
-      say("Heights converted to metres (1 unit = " + metres_text(*band) + " m: the band's unit is '" +
+      say("Heights converted to metres (1 unit = " + number_text(*band) + " m: the band's unit is '" +
           band_unit + "').");
     }
     return scale;

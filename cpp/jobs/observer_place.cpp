@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/error.h"
+#include "base/number_text.h"
 
 namespace sightbound {
 
@@ -14,15 +14,9 @@ namespace {
 constexpr double kTallest_m = 1e8;   // beyond the Moon's distance nobody stands
 constexpr double kFarthest_m = 2e7;  // half way round the Earth
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.10g", value);
-  return text;
-}
-
 void require(bool right, const std::string& name, const char* field, double value, const char* allowed) {
   if (!right)
-    throw InvalidInput(name + ": " + field + " is " + number(value) + "; it must be " + allowed + ".");
+    throw InvalidInput(name + ": " + field + " is " + number_text(value) + "; it must be " + allowed + ".");
 }
 
 // In coordinates from the base sample.
@@ -67,7 +61,7 @@ void validate(const Observer& o, const std::string& name) {
 void validate(const ViewshedOptions& options) {
   two_sided_quantile(options.confidence);  // throws outside (0, 1)
   if (!(options.refraction >= -1 && options.refraction <= 1)) {
-    throw InvalidInput("refraction is " + number(options.refraction) +
+    throw InvalidInput("refraction is " + number_text(options.refraction) +
                        "; it must be between -1 and 1 (light: 0.13, radio: 0.25, none: 0).");
   }
 }
@@ -75,7 +69,7 @@ void validate(const ViewshedOptions& options) {
 GridPlace place_on(const DemSource& source, double x, double y, const std::string& name) {
   const Xy at = source.geotransform().to_raster(x, y);
   if (!(at.x >= -0.5 && at.y >= -0.5 && at.x <= source.cols() - 0.5 && at.y <= source.rows() - 0.5)) {
-    throw InvalidInput(name + " at (" + number(x) + ", " + number(y) +
+    throw InvalidInput(name + " at (" + number_text(x) + ", " + number_text(y) +
                        ") lies outside the DEM. Give its position in the DEM's coordinate system, or use a "
                        "DEM that covers it.");
   }

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "io/crs.h"
 #include "jobs/option_names.h"
 #include "volume/target_lattice.h"
@@ -22,12 +23,6 @@ namespace {
 constexpr int kHalvings = 12;              // of the spacing, until a polygon has a place
 constexpr double kMostSquares = 1e8;       // looked at within a polygon's box
 constexpr double kMeanRadius = 6371008.8;  // of the Earth, as where there is no CRS (earth/georeference.h)
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.10g", value);
-  return text;
-}
 
 std::string name_of(const ViewVolume& view, std::size_t index) {
   return view.name.empty() ? "View " + std::to_string(index + 1) : "View '" + view.name + "'";
@@ -44,11 +39,11 @@ void validate(const ViewVolume& view, const std::string& name) {
   }
   for (const double height : {view.height_from, view.height_to}) {
     if (!(std::abs(height) <= 1e5))
-      throw InvalidInput(name + ": height is " + number(height) + "; allowed are -100000 to 100000 m.");
+      throw InvalidInput(name + ": height is " + number_text(height) + "; allowed are -100000 to 100000 m.");
   }
   if (view.height_from > view.height_to) {
-    throw InvalidInput(name + ": the height range begins at " + number(view.height_from) + " m and ends at " +
-                       number(view.height_to) + " m; give the lower one first.");
+    throw InvalidInput(name + ": the height range begins at " + number_text(view.height_from) +
+                       " m and ends at " + number_text(view.height_to) + " m; give the lower one first.");
   }
 }
 
@@ -69,7 +64,7 @@ std::vector<Xy> middles_within(const std::vector<Xyz>& ring, double side, const 
   const double first_i = std::floor(west.x / side), last_i = std::floor(east.x / side);
   const double first_j = std::floor(south.y / side), last_j = std::floor(north.y / side);
   if ((last_i - first_i + 1) * (last_j - first_j + 1) > kMostSquares)
-    throw InvalidInput(name + " is too large for view places " + number(side) +
+    throw InvalidInput(name + " is too large for view places " + number_text(side) +
                        " m apart; give a larger view_spacing.");
   std::vector<Xy> found;
   for (double j = first_j; j <= last_j; ++j) {
@@ -120,7 +115,7 @@ ViewPlaces view_places(const Surface& surface, const std::vector<ViewVolume>& vi
                        HeightReference reference, double spacing_m) {
   if (views.empty()) throw InvalidInput("views is empty; give at least one place to look from.");
   if (!(spacing_m > 0 && spacing_m <= 1e6))
-    throw InvalidInput("view_spacing is " + number(spacing_m) +
+    throw InvalidInput("view_spacing is " + number_text(spacing_m) +
                        "; allowed are more than 0 and at most 1000000 m.");
   ViewPlaces out;
   std::vector<std::uint32_t> numbers;
@@ -142,7 +137,8 @@ ViewPlaces view_places(const Surface& surface, const std::vector<ViewVolume>& vi
       for (const double height : heights) out.places.push_back({at.x, at.y, base + height});
     }
     if (out.places.size() == before) {
-      throw InvalidInput(name + " (" + number(view.outline[0].x) + ", " + number(view.outline[0].y) +
+      throw InvalidInput(name + " (" + number_text(view.outline[0].x) + ", " +
+                         number_text(view.outline[0].y) +
                          ") is not on the terrain of the volume; give places within it, in its CRS.");
     }
     if (off > 0) {

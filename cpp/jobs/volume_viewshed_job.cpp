@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "base/error.h"
 #include "base/memory_budget.h"
+#include "base/number_text.h"
 #include "base/parallel.h"
 
 namespace sightbound {
@@ -26,14 +26,13 @@ struct Prepared {
 
 void require_lines(const SightEstimate& estimate, double spacing_m, double most) {
   if (estimate.lines <= most) return;
-  char text[320];
-  std::snprintf(
-      text, sizeof(text),
-      "most_lines is %.6g, but %.6g lines of sight are needed (%zu view places, %zu targets %.6g m apart). "
-      "Targets %.6g m apart would fit, or a larger view_spacing, or a larger most_lines.",
-      most, estimate.lines, estimate.view_places, estimate.targets, spacing_m,
-      std::ceil(spacing_m * std::sqrt(estimate.lines / most)));  // targets go with 1 / spacing^2
-  throw InvalidInput(text);
+  const double fits =
+      std::ceil(spacing_m * std::sqrt(estimate.lines / most));  // targets go with 1 / spacing^2
+  throw InvalidInput("most_lines is " + number_text(most, 6) + ", but " + number_text(estimate.lines, 6) +
+                     " lines of sight are needed (" + std::to_string(estimate.view_places) +
+                     " view places, " + std::to_string(estimate.targets) + " targets " +
+                     number_text(spacing_m, 6) + " m apart). Targets " + number_text(fits, 6) +
+                     " m apart would fit, or a larger view_spacing, or a larger most_lines.");
 }
 
 Prepared prepare(const ErrorVolume& volume, const std::vector<ViewVolume>& views,
@@ -44,7 +43,8 @@ Prepared prepare(const ErrorVolume& volume, const std::vector<ViewVolume>& views
   job.targets = std::move(targets);
   job.estimate.view_places = job.views.places.size();
   job.estimate.targets = job.targets->targets();
-  job.estimate.lines = lines_of(*job.targets, job.views.places.size());
+  job.estimate.lines =
+      static_cast<double>(job.targets->targets()) * static_cast<double>(job.views.places.size());
   require_lines(job.estimate, job.targets->spacing_m, options.most_lines);
   job.estimate.bytes = HiddenVolumeBuilder::bytes_needed(*job.targets);
   MemoryBudget(options.memory_budget)
@@ -86,7 +86,6 @@ class Lines {
     used.confidence = options_.confidence;
     used.seen_from = options_.seen_from;
     used.max_distance_m = std::min(options_.max_distance, used.max_distance_m);
-    used.most_lines = options_.most_lines;
     HiddenVolume hidden = volume_viewshed(sight_, job.views.places, job.targets, used, workers, progress);
     hidden.info().error_model = rays_.volume().error_model();
     hidden.info().observers = job.views.as_json;
@@ -125,7 +124,8 @@ double seconds_of(const Prepared& job, const Lines& lines, const Workers& worker
   part.targets = sample_of(*job.targets, 0);
   const double idle = lines.time_of(part, workers);
   part.targets = sample_of(*job.targets, kTimedColumns);
-  const double asked = lines_of(*part.targets, part.views.places.size());
+  const double asked =
+      static_cast<double>(part.targets->targets()) * static_cast<double>(part.views.places.size());
   if (asked == 0) return idle;
   return idle + std::max(lines.time_of(part, workers) - idle, 0.0) * job.estimate.lines / asked;
 }

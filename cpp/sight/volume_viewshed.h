@@ -24,11 +24,7 @@ struct VolumeViewshedOptions {
   double confidence = 0.95;
   SeenFrom seen_from = SeenFrom::kAny;
   double max_distance_m = 1e300;  // in plan; targets beyond have no verdict
-  double most_lines = 1e9;        // refused above, with the spacing that would fit
 };
-
-// Rows of the lattice whose targets are judged, for one view place: an estimate needs no line.
-double lines_of(const TargetLattice&, std::size_t views);
 
 // Views are in local metres (VolumeFrame). Throws InvalidInput (no views, confidence outside (0, 1) or beyond
 // the band, too many lines), Cancelled. Advances `progress` to its end.

@@ -7,12 +7,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <numeric>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "terrain/tin_topology.h"
 
 namespace sightbound {
@@ -22,12 +22,6 @@ namespace {
 constexpr double kLargestCoordinate = 1e9;  // metres or feet: the Earth is 4e7 m round
 
 std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
-}
 
 std::string counted(std::size_t n, const std::string& one, const std::string& many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
@@ -47,7 +41,7 @@ void check_faces(const Tin& tin, const std::string& what) {
       if (bad(v.x) || bad(v.y) || bad(v.z)) {
         throw InvalidInput(
             what + ": vertex " + std::to_string(corner) + " (counted from 0) of face " + std::to_string(f) +
-            " lies at (" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) +
+            " lies at (" + number_text(v.x, 6) + ", " + number_text(v.y, 6) + ", " + number_text(v.z, 6) +
             "); coordinates must be finite numbers within 1e9. Remove the vertex and its faces.");
       }
     }

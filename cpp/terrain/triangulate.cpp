@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -22,6 +21,7 @@
 #include <CGAL/spatial_sort.h>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "terrain/tin_cleaning.h"
 
 namespace sightbound {
@@ -45,12 +45,6 @@ using Constrained = CGAL::Constrained_triangulation_plus_2<ConstrainedBase>;
 
 std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
-std::string metres(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
-
 void check(const SurveyedPoints& given, const TriangulationOptions& options) {
   constexpr std::size_t kMost = std::size_t{1} << 30;
   const std::size_t count = given.points.size();
@@ -73,7 +67,8 @@ void check(const SurveyedPoints& given, const TriangulationOptions& options) {
     }
   }
   if (!(options.longest_edge > 0)) {
-    throw InvalidInput("longest_edge is " + metres(options.longest_edge) + "; it must be a positive length.");
+    throw InvalidInput("longest_edge is " + number_text(options.longest_edge, 3) +
+                       "; it must be a positive length.");
   }
 }
 
@@ -119,7 +114,7 @@ Places merge(const std::vector<Xyz>& points) {
   if (merged > 0) {
     places.notes.push_back(
         std::to_string(merged) + " points lie where another does and were merged with it" +
-        (most_apart > 0 ? ", at the mean height (up to " + metres(most_apart) + " apart)." : "."));
+        (most_apart > 0 ? ", at the mean height (up to " + number_text(most_apart, 3) + " apart)." : "."));
   }
   return places;
 }
@@ -205,7 +200,7 @@ void add_crossings(Constrained& triangulation, const SurveyedPoints& given, cons
   if (crossings > 0) {
     made.tin.notes.push_back("Breaklines cross at " + std::to_string(crossings) +
                              " places: a vertex at the mean of their heights was added there (up to " +
-                             metres(most_apart) + " apart).");
+                             number_text(most_apart, 3) + " apart).");
   }
 }
 
@@ -267,7 +262,7 @@ Triangulation triangulate(const SurveyedPoints& given, const TriangulationOption
     throw InvalidInput(
         "The points make no triangle: they lie on a line, or all their triangles have an edge longer than "
         "longest_edge (" +
-        metres(options.longest_edge) + "). Give points around an area, or a larger longest_edge.");
+        number_text(options.longest_edge, 3) + "). Give points around an area, or a larger longest_edge.");
   }
   return made;
 }

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "volume/error_volume.h"
 #include "volume/vdb_block.h"
@@ -13,16 +12,6 @@ namespace sightbound {
 namespace {
 
 using BitLeaf = BitTree::LeafNodeType;
-
-double checked_quantile(double confidence, double largest) {
-  const double quantile = two_sided_quantile(confidence);
-  if (quantile > largest) {
-    throw InvalidInput(
-        "confidence is " + std::to_string(confidence) + ", more than this volume was built for (" +
-        std::to_string(2 * normal_cdf(largest) - 1) + "); build it with a larger largest_confidence.");
-  }
-  return quantile;
-}
 
 // The voxels of the band whose bounds satisfy `wanted`, bar the columns set in `left_out`.
 template <class Wanted>
@@ -65,14 +54,14 @@ VolumeMask select(const RatioTree& ratios, const PlanMask* left_out, const Wante
 }  // namespace
 
 VolumeMask ErrorVolume::inner(double confidence) const {
-  const auto z = static_cast<float>(checked_quantile(confidence, largest_ratio_));
+  const auto z = static_cast<float>(quantile(confidence));
   const bool columns = surface_->metric() == Metric::kVertical;
   return select(trees_->ratios, columns ? &unknown_ : nullptr,
                 [z](const RatioInterval& k) { return k.low >= -z && k.high <= z; });
 }
 
 VolumeMask ErrorVolume::outer(double confidence) const {
-  const auto z = static_cast<float>(checked_quantile(confidence, largest_ratio_));
+  const auto z = static_cast<float>(quantile(confidence));
   return select(trees_->ratios, nullptr, [z](const RatioInterval& k) { return k.low <= z && k.high >= -z; });
 }
 

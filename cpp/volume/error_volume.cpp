@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "base/error.h"
 #include "base/memory_budget.h"
+#include "base/number_text.h"
 #include "base/parallel.h"
 #include "volume/tin_surface.h"
 #include "volume/vdb.h"
@@ -17,12 +17,6 @@
 namespace sightbound {
 
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g", value);
-  return text;
-}
 
 // A voxel side whose estimated need is within the budget: the smallest, to 5 %.
 double side_that_fits(const Surface& surface, VolumeOptions options, const VolumeNeed& need,
@@ -50,8 +44,8 @@ void require_memory(const Surface& surface, const VolumeOptions& options) {
   const MemoryBudget budget(options.memory_bytes);
   if (need.bytes <= budget.bytes()) return;
   const double fits = side_that_fits(surface, options, need, budget.bytes());
-  budget.require(need.bytes, "The error volume with voxels of " + number(need.voxel_m) + " m",
-                 "voxel_m = " + number(std::ceil(fits * 100) / 100) + " would fit.");
+  budget.require(need.bytes, "The error volume with voxels of " + number_text(need.voxel_m, 3) + " m",
+                 "voxel_m = " + number_text(std::ceil(fits * 100) / 100, 3) + " would fit.");
 }
 
 }  // namespace
@@ -96,13 +90,21 @@ ErrorVolume ErrorVolume::build(std::shared_ptr<const Surface> surface, const Vol
   if (held.not_held > 0) {
     report.warnings.push_back(std::to_string(held.not_held) + " of " + std::to_string(held.faces) +
                               " faces are too steep or too well known for voxels of " +
-                              number(voxels.voxel_m) +
+                              number_text(voxels.voxel_m, 3) +
                               " m: there the volume is only known from outside. Voxels of " +
-                              number(held.finest_needed_m) + " m would hold all.");
+                              number_text(held.finest_needed_m, 3) + " m would hold all.");
   }
   volume.surface_ = std::move(surface);
   volume.trees_ = std::move(trees);
   return volume;
+}
+
+double ErrorVolume::quantile(double confidence) const {
+  const double quantile = two_sided_quantile(confidence);
+  if (quantile <= largest_ratio_) return quantile;
+  throw InvalidInput("confidence is " + number_text(confidence) + ", more than this volume was built for (" +
+                     number_text(2 * normal_cdf(largest_ratio_) - 1, 4) +
+                     "); build it with a larger largest_confidence.");
 }
 
 Voxel ErrorVolume::voxel_of(const Xyz& local) const {

@@ -5,12 +5,14 @@
 // every place in the closed voxel. Kept is the band: every voxel whose bounds meet [-K, K]. All other voxels
 // lie above (outside) the band, k > K, and hold (K', K'), or, where the terrain has an inside, below it, k <
 // -K, and hold (-K', -K'); K' = beyond(K). A bound beyond K says no more than that: beyond K.
-//   - Height fields: unknown_columns() says where there is no terrain, or not everywhere in the column.
-//   Bounds there speak only of the
-//     terrain that there is; nothing behind can be claimed visible (k <= 0 stands for them).
-//   - Sheets: nothing is inside; the sign tells the side of the faces. is_ambiguous() voxels have places
-//   nearest to a border (or a
-//     part that has no sides); their bounds are (-m, m).
+//
+// Height fields: unknown_columns() says where there is no terrain, or not everywhere in the column. Bounds
+// there speak only of the terrain that there is; nothing behind can be claimed visible (k <= 0 stands for
+// them).
+//
+// Sheets: nothing is inside; the sign tells the side of the faces. is_ambiguous() voxels have places nearest
+// to a border (or a part that has no sides); their bounds are (-m, m).
+//
 // Same bytes for any number of threads.
 #pragma once
 
@@ -73,7 +75,9 @@ class ErrorVolume {
 
   double voxel_m() const { return voxel_m_; }
   double voxel_height_m() const { return voxel_height_m_; }
-  double largest_ratio() const { return largest_ratio_; }        // K
+  double largest_ratio() const { return largest_ratio_; }  // K
+  // z(c). Throws InvalidInput for a confidence outside (0, 1) or beyond the band.
+  double quantile(double confidence) const;
   float beyond_ratio() const { return beyond(largest_ratio_); }  // K'
   const Surface& surface() const { return *surface_; }
   const std::shared_ptr<const Surface>& shared_surface() const { return surface_; }

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/number_text.h"
 
 namespace sightbound {
 
@@ -21,13 +21,9 @@ struct ColumnState {
 
 void require_height(const TargetLattice& lattice, double height_m) {
   if (height_m > 0 && height_m <= lattice.ceiling_m) return;  // false for a NaN
-  char text[160];
-  std::snprintf(
-      text, sizeof(text),
-      "height is %.6g m; allowed are more than 0 and at most %.6g m, the ceiling that the hidden volume "
-      "was made with.",
-      height_m, lattice.ceiling_m);
-  throw InvalidInput(text);
+  throw InvalidInput("height is " + number_text(height_m, 6) + " m; allowed are more than 0 and at most " +
+                     number_text(lattice.ceiling_m, 6) +
+                     " m, the ceiling that the hidden volume was made with.");
 }
 
 // Looks at all columns; `f` gets (number, column, answers).

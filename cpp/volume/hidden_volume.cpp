@@ -200,15 +200,11 @@ std::size_t HiddenVolumeBuilder::bytes_needed(const TargetLattice& lattice) {
 }
 
 HiddenVolume union_of_seen(const HiddenVolume& a, const HiddenVolume& b) {
-  return combined(a, b, true, "union of seen", [](const TargetAnswer& p, const TargetAnswer& q) {
-    return TargetAnswer{std::max(p.p, q.p), std::max(p.verdict, q.verdict)};
-  });
+  return combined(a, b, true, "union of seen", better_of);
 }
 
 HiddenVolume intersection_of_seen(const HiddenVolume& a, const HiddenVolume& b) {
-  return combined(a, b, false, "intersection of seen", [](const TargetAnswer& p, const TargetAnswer& q) {
-    return TargetAnswer{std::min(p.p, q.p), std::min(p.verdict, q.verdict)};
-  });
+  return combined(a, b, false, "intersection of seen", worse_of);
 }
 
 HiddenVolume difference_of_seen(const HiddenVolume& a, const HiddenVolume& b) {

@@ -2,9 +2,9 @@
 // The answer of a volume viewshed (paper section 5.2): for every target of a lattice what is claimed and with
 // what confidence it is visible.
 //
-//   verdict  kHidden: surely hidden, the core (every line goes through and below the terrain); kUncertain:
-//   not
-//            surely visible; kVisible: a claim at the confidence of the viewshed (error_model/verdict.h).
+//   verdict  kHidden: surely hidden, the core (every line goes through and below the terrain);
+//            kUncertain: not surely visible;
+//            kVisible: a claim at the confidence of the viewshed (error_model/verdict.h).
 //            The hidden volume is all that is not visible.
 //   p        proven pointwise confidence of visibility in [0, 1], kept as a half float, rounded towards 1/2:
 //            it never says more than what was proven.
@@ -12,6 +12,7 @@
 // Held by an OpenVDB tree whose uniform parts are tiles: airspace that is wholly seen costs next to nothing.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -33,6 +34,18 @@ struct TargetAnswer {
 
   friend bool operator==(const TargetAnswer&, const TargetAnswer&) = default;
 };
+
+// Seen from either, from both. One without a verdict does not count.
+inline TargetAnswer better_of(const TargetAnswer& a, const TargetAnswer& b) {
+  if (a.verdict == kNoVerdict) return b;
+  if (b.verdict == kNoVerdict) return a;
+  return {std::max(a.p, b.p), std::max(a.verdict, b.verdict)};
+}
+inline TargetAnswer worse_of(const TargetAnswer& a, const TargetAnswer& b) {
+  if (a.verdict == kNoVerdict) return b;
+  if (b.verdict == kNoVerdict) return a;
+  return {std::min(a.p, b.p), std::min(a.verdict, b.verdict)};
+}
 
 // What the file tells of how it was made.
 struct HiddenVolumeInfo {

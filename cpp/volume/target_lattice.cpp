@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <string>
 
 #include "base/error.h"
+#include "base/number_text.h"
 
 namespace sightbound {
 
@@ -19,15 +19,10 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastSpacing = 1e-3, kLargestLength = 1e6;  // metres; what is beyond is taken for a slip
 constexpr double kOnEdge = 1e-9;  // of a face's edges: a centre on the seam of two faces belongs to both
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
-}
-
 void require_length(double value, const char* field) {
   if (value >= kLeastSpacing && value <= kLargestLength) return;  // false for a NaN
-  throw InvalidInput(std::string(field) + " is " + number(value) + "; allowed are 0.001 to 1000000 m.");
+  throw InvalidInput(std::string(field) + " is " + number_text(value, 6) +
+                     "; allowed are 0.001 to 1000000 m.");
 }
 
 // Height of the face over a plan place; NaN when it does not reach there or is vertical.
@@ -113,8 +108,8 @@ std::shared_ptr<const TargetLattice> lattice_above(const Surface& surface, const
                                   : std::min(options.spacing_m, options.ceiling_m / 4);
   require_length(lattice->height_spacing_m, "target_height_spacing");
   if (lattice->height_spacing_m > options.ceiling_m) {
-    throw InvalidInput("target_height_spacing is " + number(lattice->height_spacing_m) +
-                       " m, more than target_ceiling (" + number(options.ceiling_m) +
+    throw InvalidInput("target_height_spacing is " + number_text(lattice->height_spacing_m, 6) +
+                       " m, more than target_ceiling (" + number_text(options.ceiling_m, 6) +
                        " m): columns would have no target. Give at most the ceiling.");
   }
 
@@ -125,7 +120,8 @@ std::shared_ptr<const TargetLattice> lattice_above(const Surface& surface, const
   const double nx = std::ceil((bounds.high.x - lattice->corner.x) / lattice->spacing_m);
   const double ny = std::ceil((bounds.high.y - lattice->corner.y) / lattice->spacing_m);
   if (!(nx * ny < 2147483647.0)) {
-    throw InvalidInput("target_spacing is " + number(lattice->spacing_m) + " m: " + number(nx * ny) +
+    throw InvalidInput("target_spacing is " + number_text(lattice->spacing_m, 6) +
+                       " m: " + number_text(nx * ny, 6) +
                        " columns of targets; at most 2147483647 are allowed. Give a larger one.");
   }
   lattice->nx = std::max(static_cast<int>(nx), 1);
