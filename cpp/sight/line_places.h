@@ -8,10 +8,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "sight/line_ends.h"
 #include "sight/sight_line.h"
 #include "sight/stencil.h"
 
@@ -22,11 +22,6 @@ namespace sightbound {
 inline constexpr double kRim = kFrameTolerance;
 // Cells a path may bow within one step to be straight there.
 inline constexpr double kStraightStep = 1e-8;
-// A place nearer to an end than this many larger cell sides is the end itself: what is left of the clearance
-// there is rounding.
-inline constexpr double kAtEnd = 1e-4;
-inline constexpr std::array kEndPlaces{1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2,
-                                       3.0 / 4};  // larger cell sides from an end
 
 class SightLine::Places {
  public:

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sight/line_ends.h"
+
 namespace sightbound {
 
 namespace {

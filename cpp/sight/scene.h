@@ -13,8 +13,6 @@ namespace sightbound {
 
 // Beyond this |k*| a probability is 0 or 1: Phi(3.29) = 0.9995.
 inline constexpr double kCertainRatio = 3.29;
-// Places nearer to an end than this many larger cell sides are judged with the between-sample error alone.
-inline constexpr double kEndZoneCells = 1.5;
 
 struct SceneOptions {
   double confidence = 0.95;

@@ -6,17 +6,13 @@
 #include <array>
 #include <cmath>
 
-#include "sight/scene.h"
-#include "volume/tin_surface.h"
+#include "sight/line_ends.h"
+#include "volume/triangle.h"
 
 namespace sightbound {
 
 namespace {
 
-// Larger cell sides from an end, beside the crossings.
-constexpr std::array kEndPlaces{1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 3.0 / 4};
-// A place nearer to an end than this share of L is the end itself (sight/line_search.h).
-constexpr double kAtEnd = 1e-4;
 // Of an edge's length: a crossing this far beyond its ends is one of its ends.
 constexpr double kAtCorner = 1e-9;
 // Share of a zone that may lie in no face, for rounding.
