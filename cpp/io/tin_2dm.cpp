@@ -14,8 +14,6 @@ namespace sightbound {
 
 namespace {
 
-constexpr std::size_t kLinesPerCheck = 1 << 14;
-
 // Elements, and which of their nodes are corners: quadratic ones have a node in the middle of each side.
 struct Kind {
   std::string_view card;
@@ -127,12 +125,7 @@ class MeshReader {
 TinSource parse_2dm(std::string_view bytes, const std::string& what, Progress& progress) {
   TinSource source;
   MeshReader reader(source, what);
-  std::size_t lines = 0;
-  while (const auto line = text::next_line(bytes)) {
-    reader.line(*line);
-    if (++lines % kLinesPerCheck == 0) progress.check();
-  }
-  reader.finish();
+  text::read_lines(bytes, reader, progress);
   return source;
 }
 

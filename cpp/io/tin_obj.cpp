@@ -9,8 +9,6 @@ namespace sightbound {
 
 namespace {
 
-constexpr std::size_t kLinesPerCheck = 1 << 14;
-
 class ObjReader {
  public:
   ObjReader(TinSource& source, const std::string& what) : source_(source), what_(what) {}
@@ -82,12 +80,7 @@ class ObjReader {
 TinSource parse_obj(std::string_view bytes, const std::string& what, Progress& progress) {
   TinSource source;
   ObjReader reader(source, what);
-  std::size_t lines = 0;
-  while (const auto line = text::next_line(bytes)) {
-    reader.line(*line);
-    if (++lines % kLinesPerCheck == 0) progress.check();
-  }
-  reader.finish();
+  text::read_lines(bytes, reader, progress);
   return source;
 }
 

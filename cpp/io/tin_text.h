@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/progress.h"
 
 namespace sightbound::text {
 
@@ -47,6 +48,18 @@ inline std::optional<std::string_view> next_line(std::string_view& rest) {
     rest.remove_prefix(end + (both ? 2 : 1));
   }
   return line;
+}
+
+// Hands every line of a text to `reader.line`, then ends it.
+template <class Reader>
+void read_lines(std::string_view bytes, Reader& reader, Progress& progress) {
+  constexpr std::size_t kLinesPerCheck = 1 << 14;
+  std::size_t lines = 0;
+  while (const auto line = next_line(bytes)) {
+    reader.line(*line);
+    if (++lines % kLinesPerCheck == 0) progress.check();
+  }
+  reader.finish();
 }
 
 // The whole word is a number, whatever the locale. "nan" and "inf" are.
