@@ -11,12 +11,11 @@
 #include <memory>
 #include <string>
 
+#include "bench_surface.h"
 #include <sys/resource.h>
 
 #include "base/memory_budget.h"
-#include "io/raster_dem.h"
 #include "terrain/regular_tin.h"
-#include "volume/dem_surface.h"
 #include "volume/error_volume.h"
 #include "volume/tin_surface.h"
 
@@ -42,17 +41,7 @@ std::shared_ptr<const Surface> surface_of(const DemSource& source, const std::st
     TinError error = resolve_tin_error(tin, model, metric);
     return std::make_shared<TinSurface>(std::move(tin), std::move(error), metric);
   }
-  DemInput input{.heights = source.read(source.window(), progress),
-                 .error = {},
-                 .geotransform = source.geotransform(),
-                 .crs_wkt = source.crs_wkt()};
-  const auto& g = input.geotransform.coefficients();
-  input.error.sampling = SampleField(static_cast<float>(sigma));
-  input.error.amplitude = SampleField(static_cast<float>(variation / kZ95));
-  input.error.cell_sizes.assign(static_cast<std::size_t>(source.rows()), {std::abs(g[1]), std::abs(g[5])});
-  input.error.larger_side_m = std::abs(g[1]);
-  input.error.profile.half_spacing_m = std::abs(g[1]) / 2;
-  return std::make_shared<DemSurface>(std::move(input));
+  return bench_surface(source, sigma, variation);
 }
 
 int run(int count, char** words) {

@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/raster_dem.h"
+#include "bench_surface.h"
+
 #include "sight/volume_viewshed.h"
-#include "volume/dem_surface.h"
 #include "volume/error_volume.h"
 
 namespace {
@@ -26,21 +26,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::shared_ptr<const DemSurface> surface_of(const DemSource& source, float sigma) {
-  Progress progress;
-  DemInput input{.heights = source.read(source.window(), progress),
-                 .error = {},
-                 .geotransform = source.geotransform(),
-                 .crs_wkt = source.crs_wkt()};
-  const auto& g = input.geotransform.coefficients();
-  input.error.sampling = SampleField(sigma);
-  input.error.amplitude = SampleField(0.0f);
-  input.error.cell_sizes.assign(static_cast<std::size_t>(source.rows()), {std::abs(g[1]), std::abs(g[5])});
-  input.error.larger_side_m = std::abs(g[1]);
-  input.error.profile.half_spacing_m = std::abs(g[1]) / 2;
-  return std::make_shared<DemSurface>(std::move(input));
 }
 
 double ground_at(const DemSurface& surface, double x, double y) {
@@ -102,7 +87,7 @@ int run(int count, char** words) {
     return 2;
   }
   const auto source = open_dem(words[1]);
-  const auto surface = surface_of(*source, static_cast<float>(std::atof(words[2])));
+  const auto surface = bench_surface(*source, std::atof(words[2]));
   VolumeOptions options;
   options.voxel_m = std::atof(words[3]);
   Progress progress;

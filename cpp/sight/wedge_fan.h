@@ -5,8 +5,8 @@
 //
 // Upper bound at +K sigma: the highest cell the wedge touches. Lower bound at -K sigma: the lowest place of
 // each column line within the wedge. Neither depends on the window in memory, and neither decides anything
-// but what is certain. Cost: about two wedge steps a cell; memory: three floats a wedge of one block (some
-// kilobytes a thread).
+// but what is certain. Cost: a third to two thirds of a wedge step a cell; memory: a float a wedge and part of the
+// upper horizon (some hundred kilobytes a thread).
 #pragma once
 
 #include <cstddef>
