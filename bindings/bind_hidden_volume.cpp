@@ -190,6 +190,7 @@ void bind_hidden_volume(py::module_& m) {
       .def_readwrite("thickness", &HiddenFiles::thickness)
       .def_readwrite("core_thickness", &HiddenFiles::core_thickness)
       .def_readwrite("top", &HiddenFiles::top)
+      .def_readwrite("fog", &HiddenFiles::fog)
       .def_readwrite("creation_options", &HiddenFiles::creation_options);
   py::class_<HiddenVolume, Held>(m, "HiddenVolume")
       .def("save", &save, py::arg("path"), py::arg("progress"))

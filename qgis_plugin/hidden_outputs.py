@@ -2,6 +2,7 @@
 """What the algorithms on hidden volumes write and tell: rasters, the fog as a mesh, areas and volumes."""
 
 from qgis.core import (
+    Qgis,
     QgsProcessingContext,
     QgsProcessingOutputNumber,
     QgsProcessingParameterFileDestination,
@@ -22,6 +23,9 @@ RASTERS = (
     ("OUTPUT_CORE", "Thickness of the surely hidden core (m)", "core_thickness", "thickness"),
 )
 TOP = "OUTPUT_TOP"
+FOG = "OUTPUT_FOG"
+# Polygons can be transparent in 3D since 3.26, meshes never: before, one sees through a net of the faces' edges.
+FOG_STYLE = "fog_faces" if Qgis.QGIS_VERSION_INT >= 32600 else "fog_net"
 NUMBERS = (
     ("AREA_HIDDEN", "Area that hides a thing of the height asked (m²)"),
     ("AREA_CORE", "Area that surely hides it (m²)"),
@@ -32,11 +36,13 @@ NUMBERS = (
 
 
 def add_outputs(algorithm, by_default=True):
-    """Rasters, mesh and numbers, all optional."""
+    """Rasters, mesh, fog and numbers, all optional."""
     for name, label, *_ in RASTERS:
         algorithm.add(QgsProcessingParameterRasterDestination(name, tr(label)), True, by_default)
-    fog = QgsProcessingParameterFileDestination(TOP, tr("Top of the hidden volume (mesh)"), "PLY (*.ply)")
-    algorithm.add(fog, True, by_default)
+    top = QgsProcessingParameterFileDestination(TOP, tr("Top of the hidden volume (mesh)"), "PLY (*.ply)")
+    algorithm.add(top, True, by_default)
+    faces = QgsProcessingParameterFileDestination(FOG, tr("Fog for the 3D view (polygons)"), "GeoPackage (*.gpkg)")
+    algorithm.add(faces, True, by_default)
     for name, label in NUMBERS:
         algorithm.addOutput(QgsProcessingOutputNumber(name, tr(label)))
 
@@ -46,8 +52,9 @@ def write_outputs(algorithm, hidden, parameters, context, feedback, first=90.0):
     wanted = [row for row in RASTERS if given(parameters, row[0])]
     results = {row[0]: algorithm.parameterAsOutputLayer(parameters, row[0], context) for row in wanted}
     arguments = {row[2]: results[row[0]] for row in wanted}
-    if given(parameters, TOP):
-        results[TOP] = arguments["top"] = algorithm.parameterAsFileOutput(parameters, TOP, context)
+    for name, argument in ((TOP, "top"), (FOG, "fog")):
+        if given(parameters, name):
+            results[name] = arguments[argument] = algorithm.parameterAsFileOutput(parameters, name, context)
     results.update(_told(hidden, algorithm.parameterAsDouble(parameters, "HIDE_HEIGHT", context), feedback))
     if not arguments:
         return results
@@ -62,10 +69,15 @@ def write_outputs(algorithm, hidden, parameters, context, feedback, first=90.0):
         feedback.pushWarning(warning)
     for name, _, _, style in wanted:
         style_when_loaded(context, results[name], style, 0.98)
-    if TOP in results and not results["VOLUME_HIDDEN"] > 0:
-        del results[TOP]  # there is no top
-    elif TOP in results:
-        _load_fog(results[TOP], context)
+    if not results["VOLUME_HIDDEN"] > 0:  # there is no top
+        return {name: value for name, value in results.items() if name not in (TOP, FOG)}
+    hint = QgsProcessingUtils.LayerHint
+    if TOP in results:
+        # Where the fog is drawn in 3D the mesh, which would hide it, lies on the terrain as the map shows it.
+        style = StyleOnLoad("fog", 0.0, flat=FOG in results)
+        _load(results[TOP], context, TOP, tr("Hidden volume"), hint.Mesh, style)
+    if FOG in results:
+        _load(results[FOG], context, FOG, tr("Fog (3D view)"), hint.Vector, StyleOnLoad(FOG_STYLE, 0.0))
     return results
 
 
@@ -85,12 +97,10 @@ def _told(hidden, height, feedback):
     return found
 
 
-def _load_fog(path, context):
-    """Adds the mesh to the project when the algorithm is done, with a style for the map and one for the 3D view."""
+def _load(path, context, output, name, hint, style):
+    """Adds a layer to the project when the algorithm is done."""
     if context.project() is None:
         return
-    name = tr("Hidden volume")
-    hint = QgsProcessingUtils.LayerHint.Mesh
-    details = QgsProcessingContext.LayerDetails(name, context.project(), TOP, hint)
-    details.setPostProcessor(StyleOnLoad("fog", 0.0))
+    details = QgsProcessingContext.LayerDetails(name, context.project(), output, hint)
+    details.setPostProcessor(style)
     context.addLayerToLoadOnCompletion(path, details)

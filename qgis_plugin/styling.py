@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Styles outputs when QGIS loads them, with the QML files that lie in styles/."""
 
+import math
 from pathlib import Path
 
 from qgis.core import (
+    QgsBasicNumericFormat,
+    QgsColorRampLegendNodeSettings,
     QgsProcessingLayerPostProcessorInterface,
     QgsRasterLayer,
     QgsSingleBandPseudoColorRenderer,
@@ -17,17 +20,19 @@ def style_path(style):
 
 
 class StyleOnLoad(QgsProcessingLayerPostProcessorInterface):
-    """Gives a loaded layer a style. `stretch` fits the colour ramp to that share of the layer's values, 0 leaves it.
+    """Gives a loaded layer a style. `stretch` fits the colour ramp to that share of the layer's values, 0 leaves it;
+    `flat` takes the 3D part of the style away.
 
     One instance for each layer: the context deletes it. It does not keep the Python half alive, so this class does.
     """
 
     _alive = []
 
-    def __init__(self, style, stretch):
+    def __init__(self, style, stretch, flat=False):
         super().__init__()
         self.style = style
         self.stretch = stretch
+        self.flat = flat
         self._alive.append(self)
 
     def postProcessLayer(self, layer, context, feedback):
@@ -36,6 +41,8 @@ class StyleOnLoad(QgsProcessingLayerPostProcessorInterface):
             feedback.pushWarning(message)
         if self.stretch and isinstance(layer, QgsRasterLayer):
             stretch_ramp(layer, self.stretch)
+        if self.flat:
+            layer.setRenderer3D(None)
         layer.triggerRepaint()
 
 
@@ -59,8 +66,18 @@ def stretch_ramp(layer, share):
     shader.setColorRampItemList(items)
     shader.setMinimumValue(least)
     shader.setMaximumValue(largest)
+    _round_labels(shader, largest - least)
     renderer.setClassificationMin(least)
     renderer.setClassificationMax(largest)
+
+
+def _round_labels(shader, span):
+    """Has the legend write three digits of what the ramp spans, not six decimals."""
+    decimals = QgsBasicNumericFormat()
+    decimals.setNumberDecimalPlaces(max(0, 2 - math.floor(math.log10(span))))
+    settings = QgsColorRampLegendNodeSettings(shader.legendSettings() or QgsColorRampLegendNodeSettings())
+    settings.setNumericFormat(decimals)
+    shader.setLegendSettings(settings)
 
 
 def style_when_loaded(context, output, style, stretch=0.0):

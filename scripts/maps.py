@@ -56,9 +56,9 @@ class Panel:
     caption: str = ""
 
 
-def start():
-    """A QgsApplication without a display; keep it alive and call stop() at the end."""
-    application = QgsApplication([], False)
+def start(window=False):
+    """A QgsApplication, without a display unless `window`; keep it alive and call stop() at the end."""
+    application = QgsApplication([], window)
     application.initQgis()
     return application
 

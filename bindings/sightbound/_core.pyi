@@ -387,6 +387,7 @@ class HiddenFiles:
     thickness: str
     core_thickness: str
     top: str
+    fog: str
     creation_options: list[str]
     def __init__(self) -> None: ...
 

@@ -73,6 +73,7 @@ class HiddenVolume:
         thickness: Path | None = None,
         core_thickness: Path | None = None,
         top: Path | None = None,
+        fog: Path | None = None,
         creation_options: CreationOptions = None,
         threads: int | None = None,
         progress: Progress | None = None,
@@ -82,6 +83,8 @@ class HiddenVolume:
         Args:
             height (lowest_visible_height), thickness, core_thickness: paths of rasters; None is not written.
             top: path of the mesh, .ply for QGIS; .nc, .2dm, .obj, .gpkg.
+            fog: path of the same faces as polygons with p and thickness, .gpkg: 3D views that cannot draw a mesh transparent
+                can draw these.
             creation_options: GDAL's for GTiff.
 
         Returns:
@@ -95,6 +98,7 @@ class HiddenVolume:
         files.thickness = arguments.path("thickness", thickness)
         files.core_thickness = arguments.path("core_thickness", core_thickness)
         files.top = arguments.path("top", top)
+        files.fog = arguments.path("fog", fog)
         files.creation_options = arguments.creation_options(creation_options)
         return self._core.write(files, arguments.threads(threads), progress)
 

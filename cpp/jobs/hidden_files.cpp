@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "base/version.h"
@@ -36,6 +37,41 @@ bool has_hidden(const HiddenVolume& hidden) {
   return volumes.hidden_m3 + volumes.uncertain_m3 > 0;
 }
 
+// What the corners hold, as means on the faces: all that polygons can hold.
+Tin with_values_on_faces(Tin tin) {
+  for (const TinAttribute& of_corners : tin.vertex_attributes) {
+    TinAttribute of_faces{of_corners.name, {}};
+    of_faces.values.reserve(tin.faces.size());
+    for (const Face& face : tin.faces) {
+      float sum = 0;
+      for (const std::int32_t corner : face) sum += of_corners.values[static_cast<std::size_t>(corner)];
+      of_faces.values.push_back(sum / 3);
+    }
+    tin.face_attributes.push_back(std::move(of_faces));
+  }
+  tin.vertex_attributes.clear();
+  return tin;
+}
+
+std::vector<std::string> write_meshes(const HiddenVolume& hidden, const HiddenFiles& files,
+                                      Progress& progress) {
+  std::vector<std::string> warnings;
+  if (!has_hidden(hidden)) {
+    for (const std::string& path : {files.top, files.fog}) {
+      if (path.empty()) continue;
+      warnings.push_back("Nothing is hidden: the hidden volume has no top, and '" + path +
+                         "' was not written.");
+    }
+    return warnings;
+  }
+  Tin top = top_of(hidden);
+  const int meshes = !files.top.empty() + !files.fog.empty();
+  progress.begin(1, static_cast<double>(meshes) * static_cast<double>(top.vertices.size() + top.faces.size()));
+  if (!files.top.empty()) warnings = write_tin(files.top, top, {}, progress);
+  if (!files.fog.empty()) write_tin(files.fog, with_values_on_faces(std::move(top)), {}, progress);
+  return warnings;
+}
+
 }  // namespace
 
 std::vector<std::string> write_hidden(const HiddenVolume& hidden, const HiddenFiles& files, int threads,
@@ -52,20 +88,18 @@ std::vector<std::string> write_hidden(const HiddenVolume& hidden, const HiddenFi
       "lowest height above ground from which on targets are certainly visible");
   add(files.thickness, rasters.thickness, "thickness of the hidden layer (not certainly visible)");
   add(files.core_thickness, rasters.core_thickness, "thickness of the surely hidden core");
-  if (outputs.empty() && files.top.empty())
+  const bool meshes = !files.top.empty() || !files.fog.empty();
+  if (outputs.empty() && !meshes)
     throw InvalidInput("There is nothing to write: name at least one output file.");
+  if (!files.fog.empty() && !files.fog.ends_with(".gpkg"))
+    throw InvalidInput("fog is '" + files.fog + "'; its polygons go into a GeoPackage, .gpkg.");
+  if (meshes && files.top == files.fog)
+    throw InvalidInput("top and fog are both '" + files.top + "'; give each a file of its own.");
   std::vector<std::string> warnings;
   if (!outputs.empty())
     write_rasters(outputs, geotransform_of(hidden.lattice()), hidden.lattice().frame.crs_wkt, threads,
                   progress);
-  if (!files.top.empty() && has_hidden(hidden)) {
-    const Tin top = top_of(hidden);
-    progress.begin(1, static_cast<double>(top.vertices.size() + top.faces.size()));
-    warnings = write_tin(files.top, top, {}, progress);
-  } else if (!files.top.empty()) {
-    warnings.push_back("Nothing is hidden: the hidden volume has no top, and '" + files.top +
-                       "' was not written.");
-  }
+  if (meshes) warnings = write_meshes(hidden, files, progress);
   progress.finish();
   return warnings;
 }

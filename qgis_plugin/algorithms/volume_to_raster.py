@@ -19,6 +19,7 @@ from ..errors import bad_input
 from ..fields import integer_field, number_field
 from ..hidden_outputs import add_outputs, write_outputs
 from ..rasters import creation_options
+from ..styling import style_when_loaded
 from ..text import tr
 from ..values import given
 from .volume_base import VolumeAlgorithm
@@ -80,4 +81,5 @@ class VolumeToRaster(VolumeAlgorithm):
             feature.setGeometry(QgsGeometry.fromPointXY(QgsPointXY(*place["deepest"])))
             feature.setAttributes([rank, *(place[key] for _, key in COLUMNS)])
             sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert)
+        style_when_loaded(context, path, "places")
         return path

@@ -150,6 +150,13 @@ def test_written_rasters_and_mesh(hidden, tmp_path):
     top = sb.read_tin(tmp_path / "top.ply")
     assert {"p", "thickness"} <= set(top.vertex_attributes) and top.is_height_field
     assert top.faces.shape[0] == 2 * np.count_nonzero(hidden.rasters().thickness > 0)
+    assert hidden.write(fog=tmp_path / "fog.gpkg") == []
+    fog = sb.read_tin(tmp_path / "fog.gpkg")
+    corners = top.vertex_attributes["p"][top.faces].mean(axis=1)
+    assert fog.faces.shape == top.faces.shape and np.allclose(np.sort(fog.face_attributes["p"]), np.sort(corners), atol=1e-6)
+    for wrong in ({"fog": tmp_path / "fog.ply"}, {"fog": tmp_path / "a.gpkg", "top": tmp_path / "a.gpkg"}):
+        with pytest.raises(ValueError, match="fog"):
+            hidden.write(**wrong)
     with pytest.raises(ValueError, match="nothing to write"):
         hidden.write()
 

@@ -7,7 +7,14 @@ import numpy
 import pytest
 import scenes
 from osgeo import ogr
-from qgis.core import QgsMeshLayer, QgsProcessingContext, QgsProcessingException, QgsProcessingUtils, QgsProject
+from qgis.core import (
+    Qgis,
+    QgsMeshLayer,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingUtils,
+    QgsProject,
+)
 
 ERROR = {"VERTICAL_ACCURACY": 0.5, "GEOLOGIC_VARIATION": 0.0}
 RASTERS = ("OUTPUT_HEIGHT", "OUTPUT_THICKNESS", "OUTPUT_CORE")
@@ -173,3 +180,39 @@ def test_the_fog_is_loaded_and_styled(provider, volume, one, tmp_path, log):
     assert (numpy.diff([one.lightness() for one in colours]) > 0).all(), "the surer hidden, the darker"
     assert log.warnings == []
     assert layer.renderer3D() is not None and layer.renderer3D().type() == "mesh"
+
+
+def test_one_sees_through_the_fog_in_3d(provider, volume, one, tmp_path, log):
+    from qgis._3d import Qgs3D, QgsPolygon3DSymbol, QgsRuleBased3DRenderer
+    from qgis.PyQt import sip
+
+    Qgs3D.initialize()
+    context = QgsProcessingContext()
+    project = QgsProject()
+    context.setProject(project)
+    algorithm = provider.algorithm("volumeviewshed").create()
+    files = {"OUTPUT_TOP": str(tmp_path / "top.ply"), "OUTPUT_FOG": str(tmp_path / "fog.gpkg")}
+    results, done = algorithm.run({"INPUT": volume, "OBSERVERS": one, "TARGET_CEILING": 12.0, **files}, context, log)
+    assert done, log.errors
+    layers = {}
+    for name in files:
+        details = context.layersToLoadOnCompletion()[results[name]]
+        layers[name] = QgsProcessingUtils.mapLayerFromString(results[name], context, True, details.layerTypeHint)
+        details.postProcessor().postProcessLayer(layers[name], context, log)
+    fog, top = layers["OUTPUT_FOG"], layers["OUTPUT_TOP"]
+    assert log.warnings == [] and fog.featureCount() == top.meshFaceCount()
+    assert top.renderer3D() is None, "it would hide the fog"
+    rules = sip.cast(fog.renderer3D(), QgsRuleBased3DRenderer).rootRule().children()
+    shown = [len(list(fog.getFeatures(rule.filterExpression()))) for rule in rules]
+    assert sum(shown) == fog.featureCount() and all(shown), "each face by one rule"
+    for rule in rules:
+        symbol = sip.cast(rule.symbol(), QgsPolygon3DSymbol)
+        if Qgis.QGIS_VERSION_INT >= 32600:
+            assert 0 < symbol.materialSettings().opacity() < 1
+        else:
+            assert symbol.renderedFacade() == 0 and symbol.edgesEnabled()
+
+
+def test_a_fog_is_a_geopackage(run, volume, one, tmp_path):
+    with pytest.raises(QgsProcessingException, match="GeoPackage"):
+        see(run, volume, one, tmp_path, OUTPUT_FOG=str(tmp_path / "fog.ply"))

@@ -5,11 +5,13 @@ import numpy
 import pytest
 import scenes
 from qgis.core import (
+    QgsNumericFormatContext,
     QgsProcessing,
     QgsProcessingContext,
     QgsProcessingOutputLayerDefinition,
     QgsProject,
     QgsRasterLayer,
+    QgsVectorLayer,
 )
 
 
@@ -99,6 +101,8 @@ def test_ramps_fit_the_values(loaded, dem, observers):
         function = layer.renderer().shader().rasterShaderFunction()
         assert function.minimumValue() == pytest.approx(numpy.nanmin(values), abs=1e-3)
         assert function.maximumValue() == pytest.approx(numpy.nanpercentile(values, 98), rel=0.02)
+        spoken = function.legendSettings().numericFormat().formatDouble(function.maximumValue(), QgsNumericFormatContext())
+        assert len(spoken.replace(".", "")) <= 5, "three digits of the span"
 
 
 def test_lines_and_critical_places_are_styled(loaded, dem, observers):
@@ -118,3 +122,12 @@ def test_raster_styles_load_by_themselves(provider, dem, style):
     layer = QgsRasterLayer(dem, "dem")
     message, loaded_fine = layer.loadNamedStyle(style_path(style))
     assert loaded_fine, message
+
+
+def test_hiding_places_are_numbered(provider, observers):
+    from sightbound_qgis.styling import style_path
+
+    layer = QgsVectorLayer(observers, "places", "ogr")
+    message, loaded_fine = layer.loadNamedStyle(style_path("places"))
+    assert loaded_fine, message
+    assert layer.labelsEnabled() and layer.labeling().settings().fieldName == "rank"
