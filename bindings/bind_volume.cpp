@@ -5,11 +5,14 @@
 #include <vector>
 
 #include "bindings.h"
+#include "numpy_views.h"
 #include "progress_bridge.h"
 #include <pybind11/stl.h>
 
+#include "jobs/volume_files.h"
 #include "jobs/volume_terrain.h"
 #include "terrain/regular_tin.h"
+#include "volume/cover_rasters.h"
 
 namespace sightbound::python {
 
@@ -59,6 +62,22 @@ void save(const Held& volume, const std::string& path, const py::object& progres
   ProgressBridge(progress).run([&](Progress& p) { volume->save(path, p); });
 }
 
+py::tuple rasters(const ErrorVolume& volume, double confidence) {
+  CoverRasters found = [&] {
+    const py::gil_scoped_release released;
+    return rasters_of(volume, confidence);
+  }();
+  return py::make_tuple(array_from(std::move(found.lower)), array_from(std::move(found.upper)),
+                        array_from(std::move(found.thickness)),
+                        py::tuple(py::cast(found.geotransform.coefficients())));
+}
+
+void write(const Held& volume, const VolumeFiles& files, double confidence, int threads,
+           const py::object& progress) {
+  ProgressBridge(progress).run(
+      [&, wanted = files](Progress& p) { write_volume(*volume, wanted, confidence, threads, p); });
+}
+
 py::dict report(const ErrorVolume& volume) {
   using namespace py::literals;
   const VolumeReport& found = volume.report();
@@ -92,8 +111,16 @@ void bind_volume(py::module_& m) {
       .def_readwrite("largest_confidence", &VolumeOptions::largest_confidence)
       .def_readwrite("memory_bytes", &VolumeOptions::memory_bytes)
       .def_readwrite("threads", &VolumeOptions::threads);
+  py::class_<VolumeFiles>(m, "VolumeFiles")
+      .def(py::init<>())
+      .def_readwrite("lower", &VolumeFiles::lower)
+      .def_readwrite("upper", &VolumeFiles::upper)
+      .def_readwrite("thickness", &VolumeFiles::thickness)
+      .def_readwrite("creation_options", &VolumeFiles::creation_options);
   py::class_<ErrorVolume, Held>(m, "ErrorVolume")
       .def("save", &save, py::arg("path"), py::arg("progress"))
+      .def("write", &write, py::arg("files"), py::arg("confidence"), py::arg("threads"), py::arg("progress"))
+      .def("rasters", &rasters, py::arg("confidence"))
       .def("report", &report)
       .def_property_readonly("voxel_m", &ErrorVolume::voxel_m)
       .def_property_readonly("voxel_height_m", &ErrorVolume::voxel_height_m)

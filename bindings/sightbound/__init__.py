@@ -22,7 +22,7 @@ from .line_of_sight import LineOfSight, line_of_sight, lines_of_sight
 from .tin import Tin, read_tin, tin_layers
 from .viewshed import viewshed, viewsheds
 from .viewshed_result import ViewshedResult
-from .volume import ErrorVolume
+from .volume import CoverRasters, ErrorVolume
 from .volume_sight import Subtraction, estimate_volume_viewshed, subtract_observer, volume_viewshed
 
 Cancelled = _core.Cancelled
@@ -37,6 +37,7 @@ def gdal_version() -> str:
 
 __all__ = [
     "Cancelled",
+    "CoverRasters",
     "Dem",
     "ErrorModel",
     "ErrorSurfaces",

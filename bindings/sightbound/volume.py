@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections import namedtuple
+
 from . import _arguments as arguments
 from ._loading import core
 from .dem import Dem
@@ -11,11 +13,26 @@ from .tin import Tin
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, Union
+    from typing import Any, NamedTuple, Union
 
-    from ._arguments import Box, Path, Progress
+    from ._arguments import Box, CreationOptions, FloatArray, Geotransform, Path, Progress
 
     Terrain = Union[Dem, Tin]
+
+    class CoverRasters(NamedTuple):
+        lower: FloatArray
+        upper: FloatArray
+        thickness: FloatArray
+        geotransform: Geotransform
+
+else:
+    CoverRasters = namedtuple("CoverRasters", "lower upper thickness geotransform")
+    CoverRasters.__doc__ = """float32 arrays [rows, cols], north up, a cell for each column of voxels; NaN: none there.
+
+    lower, upper: lowest and highest place of the error volume over the cell, metres of height, rounded outward to voxels.
+    thickness: of all voxels over the cell, metres; less than upper - lower where there are gaps, as under a bridge.
+    geotransform: GDAL's six numbers.
+    """
 
 _DEFAULTS = core.defaults()
 _PREPARED = 0.1  # share of the work that reading the terrain and resolving its error takes
@@ -111,6 +128,37 @@ class ErrorVolume:
             OSError: the file cannot be written; what stood there before stays.
         """
         self._core.save(arguments.path("path", path), progress)
+
+    def rasters(self, confidence: float = _DEFAULTS["confidence"]) -> CoverRasters:
+        """The space in which the true surface lies at this confidence, seen from above.
+
+        Raises:
+            ValueError: the confidence is not between 0 and 1, or more than largest_confidence.
+        """
+        return CoverRasters(*self._core.rasters(arguments.number("confidence", confidence)))
+
+    def write(
+        self,
+        lower: Path | None = None,
+        upper: Path | None = None,
+        thickness: Path | None = None,
+        confidence: float = _DEFAULTS["confidence"],
+        creation_options: CreationOptions = None,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> None:
+        """Writes rasters() as GeoTIFF; a path that is None is not written.
+
+        Raises:
+            ValueError: no path, one path twice, a confidence as rasters() refuses it. OSError: a file cannot be written.
+            Cancelled: progress returned False.
+        """
+        files = core.VolumeFiles()
+        files.lower = arguments.path("lower", lower)
+        files.upper = arguments.path("upper", upper)
+        files.thickness = arguments.path("thickness", thickness)
+        files.creation_options = arguments.creation_options(creation_options)
+        self._core.write(files, arguments.number("confidence", confidence), arguments.threads(threads), progress)
 
     @property
     def voxel(self) -> float:
