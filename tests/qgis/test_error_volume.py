@@ -139,12 +139,30 @@ def test_rasters_again_from_the_file(run, volume, one, tmp_path):
     assert sum(row["area_m2"] for row in places) <= again["AREA_HIDDEN"]
 
 
+def test_rasters_of_an_error_volume(run, volume, dem, log, tmp_path):
+    import sightbound
+
+    paths = {name: str(tmp_path / f"{name}.tif") for name in ("OUTPUT_LOWER", "OUTPUT_UPPER", "OUTPUT_THICKNESS")}
+    found = run("volumetoraster", feedback=log, INPUT=volume, CONFIDENCE=0.9, OUTPUT_CORE=str(tmp_path / "core.tif"), **paths)
+    assert found == paths and not (tmp_path / "core.tif").exists()
+    assert any("no OUTPUT_CORE" in line for line in log.infos)
+    lower, upper, thickness = (scenes.read(path)[0] for path in paths.values())
+    expected = sightbound.ErrorVolume.open(volume).rasters(0.9)
+    assert numpy.array_equal(lower, expected.lower, equal_nan=True)
+    known = numpy.isfinite(lower)
+    assert (thickness[known] == (upper - lower)[known]).all() and (thickness[known] >= 2 * 1.64 * 0.5).all()
+    with pytest.raises(QgsProcessingException, match="CONFIDENCE"):
+        run("volumetoraster", INPUT=volume, CONFIDENCE=0.99999, **paths)
+
+
 def test_wrong_files_are_named(run, volume, one, dem, tmp_path):
     shutil.copy(dem, tmp_path / "dem.vdb")
     with pytest.raises(QgsProcessingException, match="INPUT: .*no .vdb file"):
         see(run, str(tmp_path / "dem.vdb"), one, tmp_path)
     with pytest.raises(QgsProcessingException, match="INPUT: there is no file"):
         see(run, str(tmp_path / "none.vdb"), one, tmp_path)
+    with pytest.raises(QgsProcessingException, match="no .vdb file"):
+        run("volumetoraster", INPUT=str(tmp_path / "dem.vdb"), OUTPUT_CORE=str(tmp_path / "core.tif"))
     with pytest.raises(QgsProcessingException, match="INPUT: .*not a hidden volume"):
         run("volumetoraster", INPUT=volume, OUTPUT_CORE=str(tmp_path / "core.tif"))
 
