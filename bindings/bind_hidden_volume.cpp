@@ -27,13 +27,16 @@ Held hold(HiddenVolume volume) { return std::make_shared<HiddenVolume>(std::move
 
 void bind_options(py::module_& m) {
   py::class_<ViewVolume>(m, "ViewVolume")
-      .def(py::init([](const std::vector<std::pair<double, double>>& outline, double from, double to,
-                       std::string name) {
+      .def(py::init([](const std::vector<std::vector<std::pair<double, double>>>& rings, double from,
+                       double to, std::string name) {
              ViewVolume view{{}, from, to, std::move(name)};
-             for (const auto& [x, y] : outline) view.outline.push_back({x, y});
+             for (const auto& ring : rings) {
+               view.rings.emplace_back();
+               for (const auto& [x, y] : ring) view.rings.back().push_back({x, y});
+             }
              return view;
            }),
-           py::arg("outline"), py::arg("height_from"), py::arg("height_to"), py::arg("name"));
+           py::arg("rings"), py::arg("height_from"), py::arg("height_to"), py::arg("name"));
   py::class_<VolumeSightOptions>(m, "VolumeSightOptions")
       .def(py::init<>())
       .def_readwrite("confidence", &VolumeSightOptions::confidence)

@@ -17,12 +17,12 @@ _LAYER = "OBSERVERS"
 
 @dataclass
 class Views:
-    """What was read in the main thread: outlines in the CRS of the layer."""
+    """What was read in the main thread: rings of each place or area, in the CRS of the layer."""
 
     crs: QgsCoordinateReferenceSystem
     transforms: object
     labels: list = field(default_factory=list)
-    outlines: list = field(default_factory=list)
+    areas: list = field(default_factory=list)
     heights: list = field(default_factory=list)
     heights_to: list = field(default_factory=list)
 
@@ -33,19 +33,19 @@ class Views:
         if theirs is not None and theirs.isValid() and self.crs.isValid():
             move = QgsCoordinateTransform(self.crs, theirs, self.transforms)
         return {
-            "views": [self._moved(outline, move, label) for outline, label in zip(self.outlines, self.labels)],
+            "views": [self._moved(rings, move, label) for rings, label in zip(self.areas, self.labels)],
             "view_height": self.heights,
             "view_height_to": self.heights_to,
             "names": self.labels,
         }
 
-    def _moved(self, outline, move, label):
+    def _moved(self, rings, move, label):
         try:
-            moved = [move.transform(corner) for corner in outline]
+            moved = [[move.transform(corner) for corner in ring] for ring in rings]
         except QgsCsException:
             raise bad_input(_LAYER, tr("{} cannot be brought into the CRS of the volume.").format(label)) from None
-        corners = [(corner.x(), corner.y()) for corner in moved]
-        return corners if len(corners) > 1 else corners[0]
+        corners = [[(corner.x(), corner.y()) for corner in ring] for ring in moved]
+        return corners if len(corners[0]) > 1 else corners[0][0]
 
 
 def views_block():
@@ -96,12 +96,12 @@ def read_views(algorithm, parameters, context, feedback):
         high = low if high is None else high
         if high < low:
             raise bad_input("OBSERVER_HEIGHT_TO", tr("{:g} is below OBSERVER_HEIGHT {:g} for {}.").format(high, low, label))
-        for outline in _outlines(feature, label):
+        for rings in _areas(feature, label):
             views.labels.append(label)
-            views.outlines.append(outline)
+            views.areas.append(rings)
             views.heights.append(low)
             views.heights_to.append(high)
-    if not views.outlines:
+    if not views.areas:
         raise bad_input(_LAYER, tr("the layer holds nothing; add points or polygons, or clear the selection."))
     return views
 
@@ -124,13 +124,13 @@ def sight_arguments(algorithm, parameters, context):
     }
 
 
-def _outlines(feature, label):
-    """Each point alone, each polygon's outer ring."""
+def _areas(feature, label):
+    """The rings of each part: a point alone, or a polygon's outline and its holes."""
     geometry = feature.geometry()
     if geometry.isNull() or geometry.isEmpty():
         raise bad_input(_LAYER, tr("{} has no geometry; delete it or select others.").format(label))
     if geometry.type() == QgsWkbTypes.GeometryType.PolygonGeometry:
         polygons = geometry.asMultiPolygon() if geometry.isMultipart() else [geometry.asPolygon()]
-        return [rings[0] for rings in polygons if rings]
+        return [rings for rings in polygons if rings]
     points = geometry.asMultiPoint() if geometry.isMultipart() else [geometry.asPoint()]
-    return [[point] for point in points]
+    return [[[point]] for point in points]

@@ -372,7 +372,7 @@ def open_volume(path: str, progress: _Progress) -> ErrorVolume: ...
 
 class ViewVolume:
     def __init__(
-        self, outline: Sequence[tuple[float, float]], height_from: float, height_to: float, name: str
+        self, rings: Sequence[Sequence[tuple[float, float]]], height_from: float, height_to: float, name: str
     ) -> None: ...
 
 class VolumeSightOptions:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ._arguments import Numbers, Position, Progress
 
-    View = Union[Position, Sequence[Position]]
+    View = Union[Position, Sequence[Position], Sequence[Sequence[Position]]]
 
     class Subtraction(NamedTuple):
         rest: HiddenVolume
@@ -63,7 +63,8 @@ def volume_viewshed(
     Args:
         volume: from ErrorVolume.build() or open().
         views: sequence of places (x, y), and of areas, each the corners [(x, y), (x, y), (x, y) ...] of a polygon in which
-            the observer may be anywhere; in the volume's CRS.
+            the observer may be anywhere, or its rings [[(x, y) ...], [(x, y) ...]]: the outline, then the holes (inside is
+            what an odd number of rings goes round); in the volume's CRS.
         view_height: * of the eye, metres above ground (or absolute, see height_reference).
         view_height_to: * upper end of the heights that the eye may have; None for view_height alone.
         target_ceiling: up to which height above ground is asked, metres.
@@ -201,12 +202,14 @@ def _views(views: Any, height: Any, height_to: Any, names: Any) -> list[core.Vie
     lower = arguments.one_each("view_height", height, count, arguments.number)
     upper = lower if height_to is None else arguments.one_each("view_height_to", height_to, count, arguments.number)
     rows = zip(outlines, lower, upper, arguments.names(names, count))
-    return [core.ViewVolume(_outline(i, one), *rest) for i, (one, *rest) in enumerate(rows, 1)]
+    return [core.ViewVolume(_rings(i, one), *rest) for i, (one, *rest) in enumerate(rows, 1)]
 
 
-def _outline(number: int, view: Any) -> list[tuple[float, float]]:
-    """One (x, y), or the corners of a polygon."""
-    corners = arguments.listed(view)
-    if corners and arguments.listed(corners[0]) is not None:
-        return [arguments.pair(f"(x, y) of view {number}", corner) for corner in corners]
-    return [arguments.pair(f"(x, y) of view {number}", view)]
+def _rings(number: int, view: Any) -> list[list[tuple[float, float]]]:
+    """One (x, y), the corners of a polygon, or rings of corners."""
+    depth, first = 0, view
+    while (inner := arguments.listed(first)) and depth < 3:
+        depth, first = depth + 1, inner[0]
+    rings = [[view]] if depth < 2 else [view] if depth == 2 else view
+    name = f"(x, y) of view {number}"
+    return [[arguments.pair(name, corner) for corner in arguments.listed(ring) or [ring]] for ring in rings]

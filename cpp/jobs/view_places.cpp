@@ -28,14 +28,20 @@ std::string name_of(const ViewVolume& view, std::size_t index) {
   return view.name.empty() ? "View " + std::to_string(index + 1) : "View '" + view.name + "'";
 }
 
+bool is_place(const ViewVolume& view) { return view.rings.size() == 1 && view.rings[0].size() == 1; }
+
 void validate(const ViewVolume& view, const std::string& name) {
-  if (view.outline.empty())
+  if (view.rings.empty() || view.rings[0].empty())
     throw InvalidInput(name + " has no outline; give one place, or a polygon's corners.");
-  if (view.outline.size() == 2)
-    throw InvalidInput(name + " has two corners; give one place, or at least three corners of a polygon.");
-  for (const Xy& corner : view.outline) {
-    if (!std::isfinite(corner.x) || !std::isfinite(corner.y))
-      throw InvalidInput(name + " has a corner that is not finite.");
+  for (const std::vector<Xy>& ring : view.rings) {
+    if (ring.size() < 3 && !is_place(view)) {
+      throw InvalidInput(name + (ring.size() == 2 ? " has two corners" : " has a ring of too few corners") +
+                         "; give one place, or at least three corners of a polygon.");
+    }
+    for (const Xy& corner : ring) {
+      if (!std::isfinite(corner.x) || !std::isfinite(corner.y))
+        throw InvalidInput(name + " has a corner that is not finite.");
+    }
   }
   for (const double height : {view.height_from, view.height_to}) {
     if (!(std::abs(height) <= 1e5))
@@ -47,30 +53,38 @@ void validate(const ViewVolume& view, const std::string& name) {
   }
 }
 
+using Rings = std::vector<std::vector<Xyz>>;
+
 // Even-odd rule.
-bool inside(const std::vector<Xyz>& ring, double x, double y) {
+bool inside(const Rings& rings, double x, double y) {
   bool in = false;
-  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-    const Xyz &a = ring[i], &b = ring[j];
-    if ((a.y > y) != (b.y > y) && x < (b.x - a.x) * (y - a.y) / (b.y - a.y) + a.x) in = !in;
+  for (const std::vector<Xyz>& ring : rings) {
+    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+      const Xyz &a = ring[i], &b = ring[j];
+      if ((a.y > y) != (b.y > y) && x < (b.x - a.x) * (y - a.y) / (b.y - a.y) + a.x) in = !in;
+    }
   }
   return in;
 }
 
-// Middles of the squares of a fixed lattice that lie in the polygon.
-std::vector<Xy> middles_within(const std::vector<Xyz>& ring, double side, const std::string& name) {
-  const auto [west, east] = std::ranges::minmax(ring, {}, &Xyz::x);
-  const auto [south, north] = std::ranges::minmax(ring, {}, &Xyz::y);
-  const double first_i = std::floor(west.x / side), last_i = std::floor(east.x / side);
-  const double first_j = std::floor(south.y / side), last_j = std::floor(north.y / side);
-  if ((last_i - first_i + 1) * (last_j - first_j + 1) > kMostSquares)
-    throw InvalidInput(name + " is too large for view places " + number_text(side) +
-                       " m apart; give a larger view_spacing.");
+// Middles of the squares of a fixed lattice that lie in the polygons; nothing when there are too many to look
+// at.
+std::optional<std::vector<Xy>> middles_within(const Rings& rings, double side) {
+  Xyz low = rings[0][0], high = low;
+  for (const std::vector<Xyz>& ring : rings) {
+    for (const Xyz& corner : ring) {
+      low = {std::min(low.x, corner.x), std::min(low.y, corner.y), 0};
+      high = {std::max(high.x, corner.x), std::max(high.y, corner.y), 0};
+    }
+  }
+  const double first_i = std::floor(low.x / side), last_i = std::floor(high.x / side);
+  const double first_j = std::floor(low.y / side), last_j = std::floor(high.y / side);
+  if ((last_i - first_i + 1) * (last_j - first_j + 1) > kMostSquares) return std::nullopt;
   std::vector<Xy> found;
   for (double j = first_j; j <= last_j; ++j) {
     for (double i = first_i; i <= last_i; ++i) {
       const Xy middle{(i + 0.5) * side, (j + 0.5) * side};
-      if (inside(ring, middle.x, middle.y)) found.push_back(middle);
+      if (inside(rings, middle.x, middle.y)) found.push_back(middle);
     }
   }
   return found;
@@ -78,15 +92,22 @@ std::vector<Xy> middles_within(const std::vector<Xyz>& ring, double side, const 
 
 std::vector<Xy> plan_places(const VolumeFrame& frame, const ViewVolume& view, double spacing_m,
                             const std::string& name) {
-  std::vector<Xyz> ring;
-  for (const Xy& corner : view.outline) ring.push_back(frame.from_crs({corner.x, corner.y, 0}));
-  if (ring.size() == 1) return {{ring[0].x, ring[0].y}};
-  std::vector<Xy> found;
-  for (int n = 0; n < kHalvings && found.empty(); ++n, spacing_m /= 2)
-    found = middles_within(ring, spacing_m, name);
-  if (found.empty())
-    throw InvalidInput(name + " is a polygon without area; give a place or a wider polygon.");
-  return found;
+  Rings rings;
+  for (const std::vector<Xy>& ring : view.rings) {
+    rings.emplace_back();
+    for (const Xy& corner : ring) rings.back().push_back(frame.from_crs({corner.x, corner.y, 0}));
+  }
+  if (is_place(view)) return {{rings[0][0].x, rings[0][0].y}};
+  for (int n = 0; n < kHalvings; ++n) {
+    const std::optional<std::vector<Xy>> found = middles_within(rings, spacing_m / (1 << n));
+    if (!found && n == 0) {
+      throw InvalidInput(name + " is too large for view places " + number_text(spacing_m) +
+                         " m apart; give a larger view_spacing.");
+    }
+    if (!found) break;
+    if (!found->empty()) return *found;
+  }
+  throw InvalidInput(name + " is a polygon without area; give a place or a wider polygon.");
 }
 
 std::vector<double> heights_of(const ViewVolume& view, double spacing_m) {
@@ -101,8 +122,13 @@ std::vector<double> heights_of(const ViewVolume& view, double spacing_m) {
 std::string to_json(const ViewVolume& view, HeightReference reference, std::size_t places) {
   nlohmann::ordered_json json;
   if (!view.name.empty()) json["name"] = view.name;
-  json["outline"] = nlohmann::ordered_json::array();
-  for (const Xy& corner : view.outline) json["outline"].push_back({corner.x, corner.y});
+  auto rings = nlohmann::ordered_json::array();
+  for (const std::vector<Xy>& ring : view.rings) {
+    rings.push_back(nlohmann::ordered_json::array());
+    for (const Xy& corner : ring) rings.back().push_back({corner.x, corner.y});
+  }
+  json["outline"] = rings[0];
+  if (rings.size() > 1) json["further_rings"] = std::vector(rings.begin() + 1, rings.end());
   json["height"] = {view.height_from, view.height_to};
   json["height_reference"] = name_of(reference);
   json["places"] = places;
@@ -137,8 +163,8 @@ ViewPlaces view_places(const Surface& surface, const std::vector<ViewVolume>& vi
       for (const double height : heights) out.places.push_back({at.x, at.y, base + height});
     }
     if (out.places.size() == before) {
-      throw InvalidInput(name + " (" + number_text(view.outline[0].x) + ", " +
-                         number_text(view.outline[0].y) +
+      throw InvalidInput(name + " (" + number_text(view.rings[0][0].x) + ", " +
+                         number_text(view.rings[0][0].y) +
                          ") is not on the terrain of the volume; give places within it, in its CRS.");
     }
     if (off > 0) {

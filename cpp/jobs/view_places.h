@@ -13,7 +13,9 @@
 namespace sightbound {
 
 struct ViewVolume {
-  std::vector<Xy> outline;                    // CRS; one place, or the corners of a polygon (closed or not)
+  // CRS; one place alone, or the rings of polygons, each its corners (closed or not): inside is what an odd
+  // number of rings goes round, so that holes are rings like any other.
+  std::vector<std::vector<Xy>> rings;
   double height_from = 1.7, height_to = 1.7;  // metres, above ground or absolute
   std::string name;                           // for messages; empty = its number
 };
@@ -26,8 +28,8 @@ struct ViewPlaces {
 
 // A point is one place, or several above one another, at most `spacing_m` apart, both ends of the height
 // range among them. A polygon has places at the middles of squares of that side (half as large, again and
-// again, until one lies inside). Above ground counts from the highest of the terrain there: who is set on a
-// bridge stands on it. Throws InvalidInput naming view, field, value: no outline, a point off the terrain, a
+// again, until one lies inside, holes left out). Above ground counts from the highest of the terrain there: who is set on a
+// bridge stands on it. Throws InvalidInput naming view, field, value: no rings, a point off the terrain, a
 // height that is not finite, from above to; a polygon with no place on the terrain.
 ViewPlaces view_places(const Surface&, const std::vector<ViewVolume>&, HeightReference, double spacing_m);
 

@@ -113,6 +113,32 @@ def test_patrol_areas_have_places_inside(volume):
     assert sb.estimate_volume_viewshed(volume, [tiny], view_spacing=10)["view_places"] >= 1
 
 
+def test_nobody_looks_out_of_a_hole(volume):
+    def square(col, row, cells):
+        return [place(col, row), place(col + cells, row), place(col + cells, row + cells), place(col, row + cells)]
+
+    def places(*views):
+        return sb.estimate_volume_viewshed(volume, views, view_height=2, view_spacing=10)["view_places"]
+
+    outline, hole = square(2, 5, 12), square(5, 8, 4)
+    assert places([outline, hole]) == places(outline) - places(hole) == 144 - 16
+    assert places([outline]) == places(outline) and places([outline, hole, square(6, 9, 2)]) == 144 - 16 + 4
+    assert places([square(2, 5, 3), square(8, 5, 2)]) == places(square(2, 5, 3), square(8, 5, 2)) == 9 + 4
+    assert places(np.array(outline), [np.array(outline), np.array(hole)]) == 2 * 144 - 16
+    # From the plain and the ridge; with the ridge in a hole there is no view behind it.
+    ridge = [place(15, 1.1), place(20.95, 1.1), place(20.95, 17.9), place(15, 17.9)]
+    seen = [
+        sb.volume_viewshed(volume, [view], view_height=2, target_spacing=20, view_spacing=20, curvature=False)
+        for view in (square(4, 1, 17), [square(4, 1, 17), ridge])
+    ]
+    assert seen[0].volumes()["visible_m3"] > seen[1].volumes()["visible_m3"] > 0
+    assert "further_rings" in seen[1].report["observers"][0]
+    for wrong, message in (([outline, [place(5, 8)]], "too few corners"), ([outline, outline], "without area"),
+                           ([outline, [place(5, 8), 3.0]], "view 1")):
+        with pytest.raises(ValueError, match=message):
+            places(wrong)
+
+
 def test_same_bytes_for_any_number_of_threads(volume, hidden, eye, tmp_path):
     again = sb.volume_viewshed(
         volume, [eye], view_height=3, target_ceiling=30, target_spacing=5, curvature=False, threads=1

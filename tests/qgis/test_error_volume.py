@@ -42,13 +42,18 @@ def see(run, volume, observers, folder, **more):
     return run("volumeviewshed", INPUT=volume, OBSERVERS=observers, **{**given, **outputs(folder), **more})
 
 
-def patrol(path, side=40.0):
-    x, y = scenes.FIRST
+def square(side, offset=0.0):
+    """The ring of a square whose north-western corner lies so many metres south-east of the first observer."""
+    x, y = scenes.FIRST[0] + offset, scenes.FIRST[1] - offset
     corners = [(x, y), (x + side, y), (x + side, y - side), (x, y - side), (x, y)]
+    return f"({', '.join(f'{a} {b}' for a, b in corners)})"
+
+
+def patrol(path, geometry=f"POLYGON ({square(40.0)})"):
     source = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
-    layer = source.CreateLayer("patrol", scenes.reference(scenes.UTM), ogr.wkbPolygon)
+    layer = source.CreateLayer("patrol", scenes.reference(scenes.UTM), ogr.wkbUnknown)
     feature = ogr.Feature(layer.GetLayerDefn())
-    feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POLYGON (({', '.join(f'{a} {b}' for a, b in corners)}))"))
+    feature.SetGeometry(ogr.CreateGeometryFromWkt(geometry))
     layer.CreateFeature(feature)
     source = None
     return str(path)
@@ -110,6 +115,28 @@ def test_patrol_area_sees_more_from_any_place_than_from_all(run, volume, one, tm
         see(run, volume, area, tmp_path, SEEN_FROM=word, OBSERVER_HEIGHT_TO=8.0)["VOLUME_HIDDEN"] for word in ("any", "all")
     ]
     assert hidden[0] < hidden[1]
+
+
+def test_holes_and_parts_of_patrol_areas(run, volume, tmp_path):
+    def places(name, geometry):
+        log = scenes.Log()
+        see(run, volume, patrol(tmp_path / name, geometry), tmp_path, feedback=log, VIEW_SPACING=5.0)
+        (count,) = (line.split()[0] for line in log.infos if "view places" in line)
+        return int(count)
+
+    whole, hole, far = square(40.0), square(20.0, 10.0), square(10.0, 50.0)
+    found = {
+        name: places(f"{name}.gpkg", geometry)
+        for name, geometry in {
+            "whole": f"POLYGON ({whole})",
+            "hole": f"POLYGON ({hole})",
+            "far": f"POLYGON ({far})",
+            "rim": f"POLYGON ({whole}, {hole})",
+            "parts": f"MULTIPOLYGON (({whole}, {hole}), ({far}))",
+        }.items()
+    }
+    assert found["rim"] == found["whole"] - found["hole"] > 0
+    assert found["parts"] == found["rim"] + found["far"]
 
 
 def test_subtracting_is_looking_together(run, volume, one, observers, tmp_path):

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -44,13 +46,13 @@ std::string complaint(const std::shared_ptr<const Surface>& surface, const ViewV
 TEST(ViewPlaces, APointStandsOnTheGround) {
   const auto surface = slope(1000, 2000, "");
   const ViewPlaces found =
-      view_places(*surface, {{{{1037, 2050}}, 1.5, 1.5, ""}}, HeightReference::kGround, 10);
+      view_places(*surface, {{{{{1037, 2050}}}, 1.5, 1.5, ""}}, HeightReference::kGround, 10);
   ASSERT_EQ(found.places.size(), 1u);
   EXPECT_NEAR(found.places[0].x, 37, 1e-9);
   EXPECT_NEAR(found.places[0].y, 50, 1e-9);
   EXPECT_NEAR(found.places[0].z, 3.7 + 1.5, 1e-6);
   const ViewPlaces absolute =
-      view_places(*surface, {{{{1037, 2050}}, 40, 45, "mast"}}, HeightReference::kAbsolute, 2);
+      view_places(*surface, {{{{{1037, 2050}}}, 40, 45, "mast"}}, HeightReference::kAbsolute, 2);
   ASSERT_EQ(absolute.places.size(), 4u);  // both ends, at most 2 m apart
   EXPECT_EQ(absolute.places.front().z, 40);
   EXPECT_EQ(absolute.places.back().z, 45);
@@ -60,7 +62,7 @@ TEST(ViewPlaces, APointStandsOnTheGround) {
 TEST(ViewPlaces, APolygonHasPlacesInside) {
   const auto surface = slope(1000, 2000, "");
   // A triangle: half of 100 squares of 10 m, less or more on its long side.
-  const ViewVolume triangle{{{1050, 2050}, {1150, 2050}, {1050, 2150}}, 2, 2, ""};
+  const ViewVolume triangle{{{{1050, 2050}, {1150, 2050}, {1050, 2150}}}, 2, 2, ""};
   const ViewPlaces found = view_places(*surface, {triangle}, HeightReference::kGround, 10);
   EXPECT_GE(found.places.size(), 45u);
   EXPECT_LE(found.places.size(), 55u);
@@ -71,13 +73,47 @@ TEST(ViewPlaces, APolygonHasPlacesInside) {
     EXPECT_NEAR(place.z, place.x / 10 + 2, 1e-5);
   }
   // One that no square's middle lies in.
-  const ViewVolume tiny{{{1051, 2051}, {1052, 2051}, {1051, 2052}}, 2, 2, ""};
+  const ViewVolume tiny{{{{1051, 2051}, {1052, 2051}, {1051, 2052}}}, 2, 2, ""};
   EXPECT_GE(view_places(*surface, {tiny}, HeightReference::kGround, 10).places.size(), 1u);
+}
+
+std::vector<Xy> square(double x, double y, double side) {
+  return {{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}};
+}
+
+TEST(ViewPlaces, HolesHaveNoPlaces) {
+  const auto surface = slope(1000, 2000, "");
+  // 100 squares of 10 m, a hole of 36 of them, an island of 4 in it; the hole's ring closed, and turned round.
+  ViewVolume area{{square(1050, 2050, 100), square(1070, 2070, 60), square(1090, 2090, 20)}, 2, 2, ""};
+  area.rings[1].push_back(area.rings[1].front());
+  std::ranges::reverse(area.rings[1]);
+  const ViewPlaces found = view_places(*surface, {area}, HeightReference::kGround, 10);
+  EXPECT_EQ(found.places.size(), 100u - 36 + 4);
+  const auto within = [](const Xyz& place, double from, double to) {
+    return place.x > from && place.x < to && place.y > from && place.y < to;
+  };
+  for (const Xyz& place : found.places)
+    EXPECT_TRUE(!within(place, 70, 130) || within(place, 90, 110)) << place.x << ' ' << place.y;
+  EXPECT_TRUE(says(found.as_json[0], R"("outline":[[1050.0,2050.0])"));
+  EXPECT_TRUE(says(found.as_json[0], R"("further_rings":[[)"));
+  // What is left of an area that is nearly all hole still has its place.
+  const ViewVolume rim{{square(1050, 2050, 100), square(1050.5, 2050.5, 99)}, 2, 2, ""};
+  for (const Xyz& place : view_places(*surface, {rim}, HeightReference::kGround, 40).places)
+    EXPECT_FALSE(within(place, 50.5, 149.5));
+  EXPECT_TRUE(says(complaint(surface, {{square(1050, 2050, 10), square(1050, 2050, 10)}, 1, 1, ""}),
+                   "without area"));
+  EXPECT_TRUE(says(complaint(surface, {{square(1050, 2050, 10), {{1055, 2055}}}, 1, 1, ""}), "too few corners"));
+}
+
+TEST(ViewPlaces, SeveralPartsHavePlacesInEach) {
+  const auto surface = slope(1000, 2000, "");
+  const ViewVolume parts{{square(1050, 2050, 30), square(1120, 2050, 20)}, 2, 2, ""};
+  EXPECT_EQ(view_places(*surface, {parts}, HeightReference::kGround, 10).places.size(), 9u + 4);
 }
 
 TEST(ViewPlaces, PartsOffTheTerrainAreToldOf) {
   const auto surface = slope(1000, 2000, "");
-  const ViewVolume half{{{1150, 2050}, {1250, 2050}, {1250, 2150}, {1150, 2150}}, 2, 2, ""};
+  const ViewVolume half{{{{1150, 2050}, {1250, 2050}, {1250, 2150}, {1150, 2150}}}, 2, 2, ""};
   const ViewPlaces found = view_places(*surface, {half}, HeightReference::kGround, 10);
   EXPECT_EQ(found.places.size(), 50u);
   ASSERT_EQ(found.warnings.size(), 1u);
@@ -87,13 +123,13 @@ TEST(ViewPlaces, PartsOffTheTerrainAreToldOf) {
 TEST(ViewPlaces, WrongViewsAreNamed) {
   const auto surface = slope(1000, 2000, "");
   EXPECT_TRUE(says(complaint(surface, {{}, 1, 1, ""}), "View 1 has no outline"));
-  EXPECT_TRUE(says(complaint(surface, {{{900, 2050}}, 1, 1, "hut"}), "View 'hut' (900, 2050) is not on"));
-  EXPECT_TRUE(says(complaint(surface, {{{1050, 2050}}, 3, 1, ""}), "begins at 3 m and ends at 1 m"));
-  EXPECT_TRUE(says(complaint(surface, {{{1050, 2050}}, std::nan(""), 1, ""}), "height is nan"));
-  EXPECT_TRUE(says(complaint(surface, {{{1050, 2050}, {1060, 2050}}, 1, 1, ""}), "two corners"));
+  EXPECT_TRUE(says(complaint(surface, {{{{900, 2050}}}, 1, 1, "hut"}), "View 'hut' (900, 2050) is not on"));
+  EXPECT_TRUE(says(complaint(surface, {{{{1050, 2050}}}, 3, 1, ""}), "begins at 3 m and ends at 1 m"));
+  EXPECT_TRUE(says(complaint(surface, {{{{1050, 2050}}}, std::nan(""), 1, ""}), "height is nan"));
+  EXPECT_TRUE(says(complaint(surface, {{{{1050, 2050}, {1060, 2050}}}, 1, 1, ""}), "two corners"));
   EXPECT_TRUE(
-      says(complaint(surface, {{{1050, 2050}, {1060, 2050}, {1070, 2050}}, 1, 1, ""}), "without area"));
-  EXPECT_TRUE(says(complaint(surface, {{{1050, 2050}}, 1, 1, ""}, 0), "view_spacing is 0"));
+      says(complaint(surface, {{{{1050, 2050}, {1060, 2050}, {1070, 2050}}}, 1, 1, ""}), "without area"));
+  EXPECT_TRUE(says(complaint(surface, {{{{1050, 2050}}}, 1, 1, ""}, 0), "view_spacing is 0"));
 }
 
 TEST(GroundBend, IsTheEllipsoids) {
