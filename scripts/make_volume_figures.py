@@ -3,7 +3,7 @@
 
     scripts/build.sh && PYTHONPATH=build/python xvfb-run -a /usr/bin/python3 scripts/make_volume_figures.py
 
-Two sentries look over the middle of the sample; all places up to 100 m above ground are asked. The fog is drawn by a 3D map in
+Two sentries on towers look over the middle of the sample; all places up to 100 m above ground are asked. The fog is drawn by a 3D map in
 a layout: this needs OpenGL, hence a display (llvmpipe under Xvfb will do). QGIS 3.22 draws the fog as a net of lines of one
 pixel; drawn FINE times as large and reduced, it is what the eye sees on a screen from some way off.
 """
@@ -53,6 +53,7 @@ ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
 STYLES = ROOT / "qgis_plugin" / "styles"
 SENTRIES = ("Fire tower", "Northern spur")
+EYE_HEIGHT = 15.0
 WINDOW = (739000, 4053000, 754000, 4067000)  # UTM zone 16 N
 CELL = 80.0  # metres: about the sample's
 CEILING, SPACING = 100.0, 50.0
@@ -78,10 +79,9 @@ def run(folder):
     gdal.VectorTranslate(sentries, str(ROOT / "sample_data" / "observers.gpkg"), dstSRS="EPSG:32616", reproject=True,
                          where=f"name IN {SENTRIES}")
     source = ogr.Open(sentries)
-    places = [(f.GetGeometryRef().GetX(), f.GetGeometryRef().GetY(), f["eye_height"]) for f in source.GetLayer(0)]
+    places = [(f.GetGeometryRef().GetX(), f.GetGeometryRef().GetY()) for f in source.GetLayer(0)]
     volume = sb.ErrorVolume.build(sb.read_dem(dem))
-    hidden = sb.volume_viewshed(volume, [place[:2] for place in places], view_height=[place[2] for place in places],
-                                target_ceiling=CEILING, target_spacing=SPACING)
+    hidden = sb.volume_viewshed(volume, places, view_height=EYE_HEIGHT, target_ceiling=CEILING, target_spacing=SPACING)
     hidden.write(height=folder / "height.tif", thickness=folder / "thickness.tif", core_thickness=folder / "core.tif",
                  top=folder / "top.ply", fog=folder / "fog.gpkg")
     return hidden

@@ -66,7 +66,8 @@ std::vector<std::string> write_meshes(const HiddenVolume& hidden, const HiddenFi
   }
   Tin top = top_of(hidden);
   const int meshes = !files.top.empty() + !files.fog.empty();
-  progress.begin(1, static_cast<double>(meshes) * static_cast<double>(top.vertices.size() + top.faces.size()));
+  progress.begin(1,
+                 static_cast<double>(meshes) * static_cast<double>(top.vertices.size() + top.faces.size()));
   if (!files.top.empty()) warnings = write_tin(files.top, top, {}, progress);
   if (!files.fog.empty()) write_tin(files.fog, with_values_on_faces(std::move(top)), {}, progress);
   return warnings;

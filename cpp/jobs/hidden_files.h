@@ -15,12 +15,12 @@ struct HiddenFiles {
   std::string lowest_visible_height, thickness, core_thickness;  // GeoTIFF
   std::string top;                                               // mesh: .ply, .nc, .2dm, .obj, .gpkg
   std::string fog;  // its faces as polygons with p and thickness (means of the corners): .gpkg
-  std::vector<std::string> creation_options;                     // KEY=VALUE, GDAL's for GTiff
+  std::vector<std::string> creation_options;  // KEY=VALUE, GDAL's for GTiff
 };
 
-// Rasters (metadata SIGHTBOUND_...) appear together when all are whole, then the mesh, then the fog. Returns warnings:
-// where nothing is hidden there is no top, and neither is written. Throws InvalidInput (no path, one path
-// twice, a fog that is no .gpkg), IoError, Cancelled.
+// Rasters (metadata SIGHTBOUND_...) appear together when all are whole, then the mesh, then the fog. Returns
+// warnings: where nothing is hidden there is no top, and neither is written. Throws InvalidInput (no path,
+// one path twice, a fog that is no .gpkg), IoError, Cancelled.
 std::vector<std::string> write_hidden(const HiddenVolume&, const HiddenFiles&, int threads, Progress&);
 
 }  // namespace sightbound

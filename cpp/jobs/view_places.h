@@ -28,9 +28,9 @@ struct ViewPlaces {
 
 // A point is one place, or several above one another, at most `spacing_m` apart, both ends of the height
 // range among them. A polygon has places at the middles of squares of that side (half as large, again and
-// again, until one lies inside, holes left out). Above ground counts from the highest of the terrain there: who is set on a
-// bridge stands on it. Throws InvalidInput naming view, field, value: no rings, a point off the terrain, a
-// height that is not finite, from above to; a polygon with no place on the terrain.
+// again, until one lies inside, holes left out). Above ground counts from the highest of the terrain there:
+// who is set on a bridge stands on it. Throws InvalidInput naming view, field, value: no rings, a point off
+// the terrain, a height that is not finite, from above to; a polygon with no place on the terrain.
 ViewPlaces view_places(const Surface&, const std::vector<ViewVolume>&, HeightReference, double spacing_m);
 
 // The bend of the ground under the volume's frame, as the ellipsoid of its CRS has it at the middle of the

@@ -48,8 +48,7 @@ CoverRasters rasters_of(const ErrorVolume& volume, double confidence) {
   const Xyz corner = frame.to_crs({columns.first_i * side, (columns.last_j + 1) * side, 0});
   const double step = side / frame.metres_per_unit;
   CoverRasters out{Grid<float>(rows, cols, kNone), Grid<float>(rows, cols, kNone),
-                   Grid<float>(rows, cols, kNone),
-                   Geotransform({corner.x, step, 0, corner.y, 0, -step})};
+                   Grid<float>(rows, cols, kNone), Geotransform({corner.x, step, 0, corner.y, 0, -step})};
   Grid<int> voxels(rows, cols, 0);
   cover.for_each([&](const Voxel& low, const Voxel& high) {
     const float bottom = at_most(low.k * height), top = at_least((high.k + 1) * height);

@@ -31,7 +31,7 @@ PLACES = "OUTPUT_PLACES"
 SURFACES = (
     ("OUTPUT_LOWER", "Lowest place of the error volume (m)", "lower", "surface"),
     ("OUTPUT_UPPER", "Highest place of the error volume (m)", "upper", "surface"),
-    ("OUTPUT_THICKNESS", "", "thickness", "thickness"),
+    ("OUTPUT_THICKNESS", "", "thickness", "sigma"),
 )
 HIDDEN_ONLY = [TOP, FOG, PLACES, *(row[0] for row in RASTERS if row[0] != "OUTPUT_THICKNESS")]
 COLUMNS = (("area_m2", "area_m2"), ("volume_m3", "volume_m3"), ("depth_m", "depth"))

@@ -18,7 +18,7 @@
   </renderer-v2>
   <labeling type="simple">
     <settings>
-      <text-style fieldName="rank" isExpression="0" fontSize="9" fontSizeUnit="Point" textColor="47,43,95,255" namedStyle="Bold">
+      <text-style fieldName="rank" isExpression="0" fontSize="9" fontSizeUnit="Point" textColor="47,43,95,255" textOpacity="1" fontWeight="75" fontFamily="Sans">
         <text-buffer bufferDraw="1" bufferSize="0.8" bufferSizeUnits="MM" bufferColor="255,255,255,255"/>
       </text-style>
       <placement placement="0" dist="1.5" distUnits="MM"/>

@@ -83,7 +83,8 @@ std::vector<Xy> square(double x, double y, double side) {
 
 TEST(ViewPlaces, HolesHaveNoPlaces) {
   const auto surface = slope(1000, 2000, "");
-  // 100 squares of 10 m, a hole of 36 of them, an island of 4 in it; the hole's ring closed, and turned round.
+  // 100 squares of 10 m, a hole of 36 of them, an island of 4 in it; the hole's ring closed, and turned
+  // round.
   ViewVolume area{{square(1050, 2050, 100), square(1070, 2070, 60), square(1090, 2090, 20)}, 2, 2, ""};
   area.rings[1].push_back(area.rings[1].front());
   std::ranges::reverse(area.rings[1]);
@@ -100,9 +101,10 @@ TEST(ViewPlaces, HolesHaveNoPlaces) {
   const ViewVolume rim{{square(1050, 2050, 100), square(1050.5, 2050.5, 99)}, 2, 2, ""};
   for (const Xyz& place : view_places(*surface, {rim}, HeightReference::kGround, 40).places)
     EXPECT_FALSE(within(place, 50.5, 149.5));
-  EXPECT_TRUE(says(complaint(surface, {{square(1050, 2050, 10), square(1050, 2050, 10)}, 1, 1, ""}),
-                   "without area"));
-  EXPECT_TRUE(says(complaint(surface, {{square(1050, 2050, 10), {{1055, 2055}}}, 1, 1, ""}), "too few corners"));
+  EXPECT_TRUE(
+      says(complaint(surface, {{square(1050, 2050, 10), square(1050, 2050, 10)}, 1, 1, ""}), "without area"));
+  EXPECT_TRUE(
+      says(complaint(surface, {{square(1050, 2050, 10), {{1055, 2055}}}, 1, 1, ""}), "too few corners"));
 }
 
 TEST(ViewPlaces, SeveralPartsHavePlacesInEach) {

@@ -21,7 +21,8 @@ void expect_like_the_voxels(const ErrorVolume& volume, double confidence) {
   const VolumeFrame& frame = volume.surface().frame();
   const auto [west, step, skew, north, turn, down] = rasters.geotransform.coefficients();
   EXPECT_EQ(step, -down);
-  const int first_i = static_cast<int>(std::lround((west - frame.x) * frame.metres_per_unit / volume.voxel_m()));
+  const int first_i =
+      static_cast<int>(std::lround((west - frame.x) * frame.metres_per_unit / volume.voxel_m()));
   const int last_j =
       static_cast<int>(std::lround((north - frame.y) * frame.metres_per_unit / volume.voxel_m())) - 1;
   const Box3 bounds = volume.surface().bounds();
