@@ -24,7 +24,7 @@ RASTERS = (
 )
 TOP = "OUTPUT_TOP"
 FOG = "OUTPUT_FOG"
-# Polygons can be transparent in 3D since 3.26, meshes never: before, one sees through a net of the faces' edges.
+# QGIS draws meshes opaque in 3D. Polygons can be transparent since 3.26; before, one sees through a net of their edges.
 FOG_STYLE = "fog_faces" if Qgis.QGIS_VERSION_INT >= 32600 else "fog_net"
 NUMBERS = (
     ("AREA_HIDDEN", "Area that hides a thing of the height asked (m²)"),
