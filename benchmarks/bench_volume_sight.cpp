@@ -2,7 +2,7 @@
 // bench_volume_sight DEM sigma voxel [spacing [threads]]
 //
 // Lines a second on one thread from the middle of the DEM to a ring 4.5 km off, at three heights, and the
-// seconds of a volume viewshed of one observer there, targets up to 20 m above ground.
+// seconds of volume viewsheds of one observer and of a patrol square there, targets up to 20 m above ground.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -60,7 +60,40 @@ void time_lines(const VolumeRays& rays, const DemSurface& surface, double eye, d
               target, kLines / seconds_since(start), 100 * hidden / kLines, 100 * visible / kLines);
 }
 
-void time_viewshed(const VolumeRays& rays, const DemSurface& surface, double spacing, int threads) {
+void time_viewshed(const VolumeSight& sight, const char* what, const std::vector<ViewPlace>& views,
+                   const std::shared_ptr<const TargetLattice>& targets, const VolumeViewshedOptions& options,
+                   const Workers& workers) {
+  Progress progress;
+  const auto start = Clock::now();
+  const HiddenVolume hidden = volume_viewshed(sight, views, targets, options, workers, progress);
+  const double seconds = seconds_since(start);
+  const VerdictVolumes volumes = hidden.volumes();
+  const double all = volumes.hidden_m3 + volumes.uncertain_m3 + volumes.visible_m3;
+  std::printf("%s, %zu targets: %.1f s (%.1f %% hidden, %.1f %% uncertain)\n", what, targets->targets(), seconds,
+              100 * volumes.hidden_m3 / all, 100 * volumes.uncertain_m3 / all);
+  std::fflush(stdout);
+}
+
+// A square of places 2 m above the ground, their cells as high as the ground within them.
+std::vector<ViewPlace> patrol_square(const DemSurface& surface, double side, double spacing) {
+  const Xyz high = surface.bounds().high;
+  std::vector<ViewPlace> views;
+  for (double y = high.y / 2 - side / 2 + spacing / 2; y < high.y / 2 + side / 2; y += spacing) {
+    for (double x = high.x / 2 - side / 2 + spacing / 2; x < high.x / 2 + side / 2; x += spacing) {
+      double low = 1e9, top = -1e9;
+      for (int n = 0; n <= 16; ++n) {
+        const double z = ground_at(surface, x + (n % 4 - 1.5) / 3 * spacing, y + (n / 4 % 4 - 1.5) / 3 * spacing);
+        low = std::min(low, z), top = std::max(top, z);
+      }
+      const double half = spacing / 2;
+      views.push_back({{x, y, ground_at(surface, x, y) + 2},
+                       {{x - half, y - half, low + 2}, {x + half, y + half, top + 2}}});
+    }
+  }
+  return views;
+}
+
+void time_viewsheds(const VolumeRays& rays, const DemSurface& surface, double spacing, int threads) {
   const Workers workers(threads);
   Progress progress;
   LatticeOptions targets;
@@ -70,15 +103,15 @@ void time_viewshed(const VolumeRays& rays, const DemSurface& surface, double spa
   const VolumeSight sight(rays, {kBend, 0, kBend});
   const Xyz high = surface.bounds().high;
   const Xyz eye{high.x / 2, high.y / 2, ground_at(surface, high.x / 2, high.y / 2) + 2};
-  const auto start = Clock::now();
-  const HiddenVolume hidden = volume_viewshed(sight, {eye}, lattice, {}, workers, progress);
-  const double seconds = seconds_since(start);
-  const VerdictVolumes volumes = hidden.volumes();
-  const double all = volumes.hidden_m3 + volumes.uncertain_m3 + volumes.visible_m3;
-  std::printf(
-      "one observer, %zu targets %g m apart: %.1f s, %.0f lines/s (%.0f %% hidden, %.0f %% uncertain)\n",
-      lattice->targets(), spacing, seconds, static_cast<double>(lattice->targets()) / seconds,
-      100 * volumes.hidden_m3 / all, 100 * volumes.uncertain_m3 / all);
+  VolumeViewshedOptions options;
+  options.holds_for = HoldsFor::kPlace;
+  time_viewshed(sight, "one observer, targets as places", {ViewPlace::point(eye)}, lattice, options, workers);
+  options.holds_for = HoldsFor::kTarget;
+  time_viewshed(sight, "one observer, targets as boxes", {ViewPlace::point(eye)}, lattice, options, workers);
+  options.holds_for = HoldsFor::kVoxel;
+  time_viewshed(sight, "one observer", {ViewPlace::point(eye)}, lattice, options, workers);
+  time_viewshed(sight, "a patrol square of 200 m", patrol_square(surface, 200, spacing), lattice, options,
+                workers);
 }
 
 int run(int count, char** words) {
@@ -101,7 +134,7 @@ int run(int count, char** words) {
   time_lines(rays, *surface, 2, 5);
   time_lines(rays, *surface, 30, 30);
   time_lines(rays, *surface, 100, 60);
-  time_viewshed(rays, *surface, count > 4 ? std::atof(words[4]) : 10, count > 5 ? std::atoi(words[5]) : 0);
+  time_viewsheds(rays, *surface, count > 4 ? std::atof(words[4]) : 10, count > 5 ? std::atoi(words[5]) : 0);
   return 0;
 }
 

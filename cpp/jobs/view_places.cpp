@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -20,6 +22,7 @@ namespace sightbound {
 
 namespace {
 
+constexpr int kPlacesAcross = 8;            // an area, where no spacing is given
 constexpr int kHalvings = 12;              // of the spacing, until a polygon has a place
 constexpr double kMostSquares = 1e8;       // looked at within a polygon's box
 constexpr double kMeanRadius = 6371008.8;  // of the Earth, as where there is no CRS (earth/georeference.h)
@@ -67,56 +70,142 @@ bool inside(const Rings& rings, double x, double y) {
   return in;
 }
 
-// Middles of the squares of a fixed lattice that lie in the polygons; nothing when there are too many to look
-// at.
-std::optional<std::vector<Xy>> middles_within(const Rings& rings, double side) {
-  Xyz low = rings[0][0], high = low;
-  for (const std::vector<Xyz>& ring : rings) {
-    for (const Xyz& corner : ring) {
-      low = {std::min(low.x, corner.x), std::min(low.y, corner.y), 0};
-      high = {std::max(high.x, corner.x), std::max(high.y, corner.y), 0};
-    }
-  }
-  const double first_i = std::floor(low.x / side), last_i = std::floor(high.x / side);
-  const double first_j = std::floor(low.y / side), last_j = std::floor(high.y / side);
-  if ((last_i - first_i + 1) * (last_j - first_j + 1) > kMostSquares) return std::nullopt;
-  std::vector<Xy> found;
-  for (double j = first_j; j <= last_j; ++j) {
-    for (double i = first_i; i <= last_i; ++i) {
-      const Xy middle{(i + 0.5) * side, (j + 0.5) * side};
-      if (inside(rings, middle.x, middle.y)) found.push_back(middle);
-    }
-  }
-  return found;
-}
-
-std::vector<Xy> plan_places(const VolumeFrame& frame, const ViewVolume& view, double spacing_m,
-                            const std::string& name) {
+Rings local_rings(const VolumeFrame& frame, const ViewVolume& view) {
   Rings rings;
   for (const std::vector<Xy>& ring : view.rings) {
     rings.emplace_back();
     for (const Xy& corner : ring) rings.back().push_back(frame.from_crs({corner.x, corner.y, 0}));
   }
-  if (is_place(view)) return {{rings[0][0].x, rings[0][0].y}};
+  return rings;
+}
+
+Box3 box_of(const Rings& rings) {
+  Box3 box{rings[0][0], rings[0][0]};
+  for (const std::vector<Xyz>& ring : rings) {
+    for (const Xyz& corner : ring) {
+      box.low = {std::min(box.low.x, corner.x), std::min(box.low.y, corner.y), 0};
+      box.high = {std::max(box.high.x, corner.x), std::max(box.high.y, corner.y), 0};
+    }
+  }
+  return box;
+}
+
+// A place and all of the polygon that it stands for; heights not yet told.
+struct PlanCell {
+  Xy place;
+  Box3 box;
+
+  static PlanCell square(double i, double j, double side) {
+    return {{(i + 0.5) * side, (j + 0.5) * side}, {{i * side, j * side, 0}, {(i + 1) * side, (j + 1) * side, 0}}};
+  }
+  void take_in(const Box3& other) {
+    box.low = {std::min(box.low.x, other.low.x), std::min(box.low.y, other.low.y), 0};
+    box.high = {std::max(box.high.x, other.high.x), std::max(box.high.y, other.high.y), 0};
+  }
+  double distance(const Xy& other) const { return std::hypot(place.x - other.x, place.y - other.y); }
+};
+
+// The squares of a fixed lattice whose middles lie in the polygons; nothing when there are too many to look at.
+std::optional<std::vector<PlanCell>> squares_within(const Rings& rings, double side) {
+  const Box3 box = box_of(rings);
+  const double first_i = std::floor(box.low.x / side), last_i = std::floor(box.high.x / side);
+  const double first_j = std::floor(box.low.y / side), last_j = std::floor(box.high.y / side);
+  if ((last_i - first_i + 1) * (last_j - first_j + 1) > kMostSquares) return std::nullopt;
+  std::vector<PlanCell> found;
+  for (double j = first_j; j <= last_j; ++j) {
+    for (double i = first_i; i <= last_i; ++i) {
+      const PlanCell square = PlanCell::square(i, j, side);
+      if (inside(rings, square.place.x, square.place.y)) found.push_back(square);
+    }
+  }
+  return found;
+}
+
+// Squares that an edge passes and whose middle is outside hold the rest of the polygon: the nearest cell takes
+// each of them in.
+void take_in_rims(const Rings& rings, double side, std::vector<PlanCell>& cells) {
+  std::set<std::pair<double, double>> rims;
+  for (const std::vector<Xyz>& ring : rings) {
+    for (std::size_t n = 0, m = ring.size() - 1; n < ring.size(); m = n++) {
+      Xyz a = ring[m], b = ring[n];
+      if (a.x > b.x) std::swap(a, b);
+      for (double i = std::floor(a.x / side); i <= std::floor(b.x / side); ++i) {
+        const auto y_at = [&](double x) {
+          return b.x == a.x ? a.y : a.y + (std::clamp(x, a.x, b.x) - a.x) * (b.y - a.y) / (b.x - a.x);
+        };
+        double low = std::min(y_at(i * side), y_at((i + 1) * side)),
+               high = std::max(y_at(i * side), y_at((i + 1) * side));
+        if (a.x == b.x) low = std::min(a.y, b.y), high = std::max(a.y, b.y);
+        for (double j = std::floor(low / side); j <= std::floor(high / side); ++j) rims.emplace(i, j);
+      }
+    }
+  }
+  for (const auto& [i, j] : rims) {
+    const PlanCell rim = PlanCell::square(i, j, side);
+    if (inside(rings, rim.place.x, rim.place.y)) continue;
+    std::ranges::min_element(cells, {}, [&](const PlanCell& cell) { return cell.distance(rim.place); })
+        ->take_in(rim.box);
+  }
+}
+
+std::vector<PlanCell> plan_cells(const Rings& rings, double spacing_m, const std::string& name) {
   for (int n = 0; n < kHalvings; ++n) {
-    const std::optional<std::vector<Xy>> found = middles_within(rings, spacing_m / (1 << n));
+    const double side = spacing_m / (1 << n);
+    std::optional<std::vector<PlanCell>> found = squares_within(rings, side);
     if (!found && n == 0) {
       throw InvalidInput(name + " is too large for view places " + number_text(spacing_m) +
                          " m apart; give a larger view_spacing.");
     }
     if (!found) break;
-    if (!found->empty()) return *found;
+    if (found->empty()) continue;
+    take_in_rims(rings, side, *found);
+    return *found;
   }
   throw InvalidInput(name + " is a polygon without area; give a place or a wider polygon.");
 }
 
-std::vector<double> heights_of(const ViewVolume& view, double spacing_m) {
+// A height to look from, and those it stands for.
+struct ViewHeight {
+  double at, from, to;
+};
+
+std::vector<ViewHeight> heights_of(const ViewVolume& view, double spacing_m) {
   const double range = view.height_to - view.height_from;
+  if (range == 0) return {{view.height_from, view.height_from, view.height_from}};
   const int steps = static_cast<int>(std::min(std::ceil(range / spacing_m), 1e6));
-  if (range == 0) return {view.height_from};
-  std::vector<double> heights;
-  for (int n = 0; n <= steps; ++n) heights.push_back(view.height_from + range * n / steps);
+  std::vector<ViewHeight> heights;
+  for (int n = 0; n <= steps; ++n) {
+    const double at = view.height_from + range * n / steps, half = range / steps / 2;
+    heights.push_back({at, std::max(at - half, view.height_from), std::min(at + half, view.height_to)});
+  }
   return heights;
+}
+
+// The places of one view, one above the other over each of its cells. How many cells are off the terrain.
+std::size_t add_places(const Surface& surface, const std::vector<PlanCell>& cells,
+                       const std::vector<ViewHeight>& heights, HeightReference reference,
+                       std::vector<ViewPlace>& places) {
+  std::vector<std::uint32_t> numbers;
+  std::size_t off = 0;
+  for (const PlanCell& cell : cells) {
+    const double ground = terrain_over(surface, cell.place.x, cell.place.y, numbers).highest;
+    if (std::isnan(ground)) {
+      ++off;
+      continue;
+    }
+    const bool above = reference == HeightReference::kGround, wide = !(cell.box.low == cell.box.high);
+    const TerrainSpan within = wide ? terrain_within(surface, cell.box, numbers) : TerrainSpan{ground, ground};
+    const double base = above ? ground : 0;
+    // The middle of a square may lie on the seam of two faces.
+    const double low = above ? std::min(within.ground, ground) : 0,
+                 high = above ? std::max(within.highest, ground) : 0;
+    for (const ViewHeight& height : heights) {
+      places.push_back({{cell.place.x, cell.place.y, base + height.at},
+                        {{cell.box.low.x, cell.box.low.y, low + height.from},
+                         {cell.box.high.x, cell.box.high.y, high + height.to}}});
+    }
+  }
+  return off;
 }
 
 std::string to_json(const ViewVolume& view, HeightReference reference, std::size_t places) {
@@ -138,37 +227,32 @@ std::string to_json(const ViewVolume& view, HeightReference reference, std::size
 }  // namespace
 
 ViewPlaces view_places(const Surface& surface, const std::vector<ViewVolume>& views,
-                       HeightReference reference, double spacing_m) {
+                       HeightReference reference, double spacing_m, double least_m) {
   if (views.empty()) throw InvalidInput("views is empty; give at least one place to look from.");
-  if (!(spacing_m > 0 && spacing_m <= 1e6))
+  if (!(spacing_m >= 0 && spacing_m <= 1e6))
     throw InvalidInput("view_spacing is " + number_text(spacing_m) +
-                       "; allowed are more than 0 and at most 1000000 m.");
+                       "; allowed are 0 (chosen) to 1000000 m.");
   ViewPlaces out;
-  std::vector<std::uint32_t> numbers;
   for (std::size_t v = 0; v < views.size(); ++v) {
     const ViewVolume& view = views[v];
     const std::string name = name_of(view, v);
     validate(view, name);
+    const Rings rings = local_rings(surface.frame(), view);
+    const Box3 box = box_of(rings);
+    const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
+    const double spacing = spacing_m > 0 ? spacing_m : std::max(side / kPlacesAcross, least_m);
+    const std::vector<PlanCell> cells = is_place(view)
+                                            ? std::vector<PlanCell>{{{box.low.x, box.low.y}, box}}
+                                            : plan_cells(rings, spacing, name);
     const std::size_t before = out.places.size();
-    const std::vector<Xy> plan = plan_places(surface.frame(), view, spacing_m, name);
-    const std::vector<double> heights = heights_of(view, spacing_m);
-    std::size_t off = 0;
-    for (const Xy& at : plan) {
-      const TerrainSpan span = terrain_over(surface, at.x, at.y, numbers);
-      if (std::isnan(span.highest)) {
-        ++off;
-        continue;
-      }
-      const double base = reference == HeightReference::kGround ? span.highest : 0;
-      for (const double height : heights) out.places.push_back({at.x, at.y, base + height});
-    }
+    const std::size_t off = add_places(surface, cells, heights_of(view, spacing), reference, out.places);
     if (out.places.size() == before) {
       throw InvalidInput(name + " (" + number_text(view.rings[0][0].x) + ", " +
                          number_text(view.rings[0][0].y) +
                          ") is not on the terrain of the volume; give places within it, in its CRS.");
     }
     if (off > 0) {
-      out.warnings.push_back(name + ": " + std::to_string(off) + " of " + std::to_string(plan.size()) +
+      out.warnings.push_back(name + ": " + std::to_string(off) + " of " + std::to_string(cells.size()) +
                              " places are not on the terrain and were left out.");
     }
     out.as_json.push_back(to_json(view, reference, out.places.size() - before));

@@ -37,9 +37,9 @@ void require_lines(const SightEstimate& estimate, double spacing_m, double most)
 
 Prepared prepare(const ErrorVolume& volume, const std::vector<ViewVolume>& views,
                  const VolumeSightOptions& options, std::shared_ptr<const TargetLattice> targets) {
-  const double spacing = options.view_spacing != 0 ? options.view_spacing : targets->spacing_m;
   Prepared job;
-  job.views = view_places(volume.surface(), views, options.height_reference, spacing);
+  job.views =
+      view_places(volume.surface(), views, options.height_reference, options.view_spacing, targets->spacing_m);
   job.targets = std::move(targets);
   job.estimate.view_places = job.views.places.size();
   job.estimate.targets = job.targets->targets();
@@ -85,6 +85,7 @@ class Lines {
     VolumeViewshedOptions used;
     used.confidence = options_.confidence;
     used.seen_from = options_.seen_from;
+    used.holds_for = options_.holds_for;
     used.max_distance_m = std::min(options_.max_distance, used.max_distance_m);
     HiddenVolume hidden = volume_viewshed(sight_, job.views.places, job.targets, used, workers, progress);
     hidden.info().error_model = rays_.volume().error_model();

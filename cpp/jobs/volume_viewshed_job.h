@@ -20,7 +20,8 @@ struct VolumeSightOptions {
   SeenFrom seen_from = SeenFrom::kAny;  // any or all of the view places, all views together
   HeightReference height_reference = HeightReference::kGround;
   double max_distance = kUnlimited;  // metres in plan; targets beyond have no verdict
-  double view_spacing = 0;           // metres between places in a patrol area; 0 = target spacing
+  HoldsFor holds_for = HoldsFor::kVoxel;  // what of a target its verdict speaks of
+  double view_spacing = 0;  // metres between places in a patrol area; 0 = an eighth of it, at least the targets'
   LatticeOptions targets;            // not used by subtract_observer()
   double most_lines = 1e9;           // refused above
   int threads = 0;                   // 0 = all cores

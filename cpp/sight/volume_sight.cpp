@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "sight/face_under.h"
 #include "sight/line_ends.h"
 #include "volume/triangle.h"
 
@@ -13,60 +14,9 @@ namespace sightbound {
 
 namespace {
 
-// Of an edge's length: a crossing this far beyond its ends is one of its ends.
-constexpr double kAtCorner = 1e-9;
-// Share of a zone that may lie in no face, for rounding.
-constexpr double kUncovered = 1e-6;
-
-double plan_length(const VolumeLine& line) {
-  return std::hypot(line.to.x - line.from.x, line.to.y - line.from.y);
-}
-double length_in(const VolumeLine& line, Metric metric) {
-  const double plan = plan_length(line);
-  return metric == Metric::kVertical ? plan : std::hypot(plan, line.to.z - line.from.z);
-}
-
 RatioInterval lesser(const RatioInterval& a, const RatioInterval& b) {
   return {std::min(a.low, b.low), std::min(a.high, b.high)};
 }
-
-// Where a line runs within a triangle in plan: t, and the height and sigma_g of the ground there.
-class FaceUnder {
- public:
-  FaceUnder(const SurfaceFace& face, const GrowthProfile& profile, const VolumeLine& line)
-      : face_(face), profile_(profile), line_(line) {
-    const double dx = line.to.x - line.from.x, dy = line.to.y - line.from.y;
-    for (std::size_t n = 0; n < 3; ++n) {
-      const Xyz &a = face.corner[n], &b = face.corner[(n + 1) % 3];
-      const double ex = b.x - a.x, ey = b.y - a.y, cross = dx * ey - dy * ex;
-      if (cross == 0) continue;
-      const double ax = a.x - line.from.x, ay = a.y - line.from.y;
-      const double along = (ax * dy - ay * dx) / cross;
-      if (along < -kAtCorner || along > 1 + kAtCorner) continue;
-      add((ax * ey - ay * ex) / cross);
-    }
-  }
-
-  int crossings() const { return count_; }
-  double crossing(int n) const { return t_[static_cast<std::size_t>(n)]; }
-  double from() const { return count_ > 0 ? *std::min_element(t_.begin(), t_.begin() + count_) : 2; }
-  double to() const { return count_ > 0 ? *std::max_element(t_.begin(), t_.begin() + count_) : -2; }
-
-  double ratio(double t) const {
-    const Xyz at = line_.at(t);
-    const SurfacePlace ground = place_on(face_, profile_, at.x, at.y);
-    return (at.z - ground.height) / std::max(ground.between, kLeastSigma);
-  }
-
- private:
-  void add(double t) { t_[static_cast<std::size_t>(count_++)] = t; }
-
-  const SurfaceFace& face_;
-  const GrowthProfile& profile_;
-  const VolumeLine& line_;
-  std::array<double, 3> t_{};
-  int count_ = 0;
-};
 
 // Does the segment meet the triangle?
 bool meets(const Xyz& from, const Xyz& to, const std::array<Xyz, 3>& corner) {
@@ -180,6 +130,75 @@ RatioInterval VolumeSight::ratio(const EndZone& observer, const EndZone& target)
     k = lesser(k, rays_.least(line, zone, 1 - zone));
   }
   return k;
+}
+
+LineBundle VolumeSight::bundle(const Box3& from, const Box3& to) const {
+  LineBundle bundle;
+  bundle.from_room = 0.5 * (from.high - from.low);
+  bundle.to_room = 0.5 * (to.high - to.low);
+  const Xyz a = 0.5 * (from.low + from.high), b = 0.5 * (to.low + to.high);
+  const Xyz apart = b - a, room = bundle.from_room + bundle.to_room;
+  bundle.middle = {a, b, bend_.drop(apart.x, apart.y)};
+  // The form is convex: largest at a corner, nowhere below its tangent plane in the middle.
+  double most = bundle.middle.drop;
+  for (const double x : {apart.x - room.x, apart.x + room.x}) {
+    for (const double y : {apart.y - room.y, apart.y + room.y}) most = std::max(most, bend_.drop(x, y));
+  }
+  const double slope_x = 2 * std::abs(bend_.xx * apart.x + bend_.xy * apart.y),
+               slope_y = 2 * std::abs(bend_.xy * apart.x + bend_.yy * apart.y);
+  bundle.drop_spread = std::max(most - bundle.middle.drop, slope_x * room.x + slope_y * room.y);
+  const bool in_space = rays_.volume().surface().metric() == Metric::kNormal;
+  const auto near = [](double d, double r) { return std::max(std::abs(d) - r, 0.0); };
+  const auto far = [](double d, double r) { return std::abs(d) + r; };
+  bundle.shortest = std::hypot(near(apart.x, room.x), near(apart.y, room.y), in_space ? near(apart.z, room.z) : 0);
+  bundle.longest = std::hypot(far(apart.x, room.x), far(apart.y, room.y), in_space ? far(apart.z, room.z) : 0);
+  return bundle;
+}
+
+namespace {
+
+VolumeBeam beam_of(const LineBundle& bundle) {
+  const VolumeLine& line = bundle.middle;
+  return {{line.from - bundle.from_room, line.from + bundle.from_room},
+          {line.to - bundle.to_room, line.to + bundle.to_room},
+          std::max(line.drop - bundle.drop_spread, 0.0),
+          line.drop + bundle.drop_spread};
+}
+
+}  // namespace
+
+bool VolumeSight::clear(const EndRoom& observer, const EndRoom& target, double ratio) const {
+  const LineBundle lines = bundle(observer.box(), target.box());
+  if (!observer.clear(lines, true, ratio) || !target.clear(lines, false, ratio)) return false;
+  const double zone = kEndZoneCells * rays_.volume().surface().spacing_m() / lines.longest;
+  return zone >= 0.5 || rays_.clear(beam_of(lines), {zone, 1 - zone}, ratio, Grain::kVoxels);
+}
+
+bool VolumeSight::clear(const EndRoom& observer, const Box3& targets, double ratio) const {
+  const LineBundle lines = bundle(observer.box(), targets);
+  const double zone = kEndZoneCells * rays_.volume().surface().spacing_m() / lines.longest;
+  return zone < 1 && rays_.clear(beam_of(lines), {zone, 1}, ratio, Grain::kBlocks) &&
+         observer.clear(lines, true, ratio);
+}
+
+bool VolumeSight::blocked(const Box3& observers, const Box3& targets, double ratio, Grain grain) const {
+  const LineBundle lines = bundle(observers, targets);
+  if (!(lines.shortest > 0)) return false;
+  const double zone = kEndZoneCells * rays_.volume().surface().spacing_m() / lines.shortest;
+  return zone < 0.5 && rays_.blocked(beam_of(lines), {zone, 1 - zone}, ratio, grain);
+}
+
+bool VolumeSight::doubtful(const Box3& observers, const Box3& targets, double most, Grain grain) const {
+  const LineBundle lines = bundle(observers, targets);
+  if (!(lines.shortest > 0)) return false;
+  const double zone = kEndZoneCells * rays_.volume().surface().spacing_m() / lines.shortest;
+  return zone < 0.5 && rays_.doubtful(beam_of(lines), {zone, 1 - zone}, most, grain);
+}
+
+bool VolumeSight::blocked(const EndRoom& observer, const EndRoom& target, double ratio) const {
+  if (blocked(observer.box(), target.box(), ratio, Grain::kVoxels)) return true;
+  const LineBundle lines = bundle(observer.box(), target.box());
+  return observer.blocked(lines, true, ratio) || target.blocked(lines, false, ratio);
 }
 
 double proven_probability(const RatioInterval& k) {

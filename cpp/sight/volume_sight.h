@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "error_model/verdict.h"
+#include "sight/end_room.h"
 #include "volume/volume_ray.h"
 
 namespace sightbound {
@@ -53,11 +54,25 @@ class VolumeSight {
 
   const VolumeRays& rays() const { return rays_; }
   EndZone zone(const Xyz& place) const { return EndZone(rays_.volume().surface(), place); }
+  EndRoom room(const Xyz& middle, const Xyz& half) const { return EndRoom(rays_.volume(), middle, half); }
 
   // Bounds of k* between the two places, within +-K'.
   RatioInterval ratio(const EndZone& observer, const EndZone& target) const;
 
+  // Proofs for every line between two boxes; false = not proven. k* >= ratio for all; k* <= -ratio for all.
+  // abs(ratio) <= K, > 0 where the end zones are judged. Sheets are never proven to block.
+  bool clear(const EndRoom& observer, const EndRoom& target, double ratio) const;
+  bool blocked(const EndRoom& observer, const EndRoom& target, double ratio) const;
+  // The same from the voxels, or their blocks, alone: cheaper for large boxes, and proves less. What is clear
+  // with the error of the samples is clear without.
+  bool clear(const EndRoom& observer, const Box3& targets, double ratio) const;
+  bool blocked(const Box3& observers, const Box3& targets, double ratio, Grain) const;
+  // ratio().low is not above `most` for any of the lines.
+  bool doubtful(const Box3& observers, const Box3& targets, double most, Grain) const;
+
  private:
+  LineBundle bundle(const Box3& from, const Box3& to) const;
+
   const VolumeRays& rays_;
   GroundBend bend_;
 };

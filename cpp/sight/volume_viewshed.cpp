@@ -2,58 +2,71 @@
 #include "sight/volume_viewshed.h"
 
 #include <algorithm>
-#include <cmath>
-#include <string>
 #include <utility>
 
 #include "base/error.h"
-#include "error_model/error_model.h"
+#include "sight/target_tile.h"
 
 namespace sightbound {
 
 namespace {
 
-TargetAnswer answer_of(const RatioInterval& k, double quantile) {
-  return {static_cast<float>(proven_probability(k)), verdict_of(k, quantile)};
+Xyz room_of(HoldsFor holds_for, const ErrorVolume& volume, const TargetLattice& targets) {
+  if (holds_for == HoldsFor::kPlace) return {};
+  const bool voxel = holds_for == HoldsFor::kVoxel;
+  const double plan = voxel ? volume.voxel_m() : targets.spacing_m;
+  return 0.5 * Xyz{plan, plan, voxel ? volume.voxel_height_m() : targets.height_spacing_m};
+}
+
+// The ends of all lines at the views.
+void look_around(TileQuestion& ask, const Workers& workers) {
+  const std::vector<ViewPlace>& places = ask.views.places();
+  const bool points = std::ranges::all_of(places, &ViewPlace::is_point);
+  ask.rooms.resize(places.size());
+  if (!points) ask.cells.resize(places.size());
+  for (const ViewPlace& view : places) ask.zones.push_back(ask.sight.zone(view.place));
+  workers.for_each(places.size(), [&](std::size_t n) {
+    const Box3& cell = places[n].cell;
+    ask.rooms[n] = ask.sight.room(places[n].place, {});
+    if (!points) ask.cells[n] = ask.sight.room(0.5 * (cell.low + cell.high), 0.5 * (cell.high - cell.low));
+  });
 }
 
 }  // namespace
 
-HiddenVolume volume_viewshed(const VolumeSight& sight, const std::vector<Xyz>& views,
+HiddenVolume volume_viewshed(const VolumeSight& sight, const std::vector<ViewPlace>& views,
                              std::shared_ptr<const TargetLattice> targets,
                              const VolumeViewshedOptions& options, const Workers& workers,
                              Progress& progress) {
-  const double quantile = sight.rays().volume().quantile(options.confidence);
+  const ErrorVolume& volume = sight.rays().volume();
+  const double quantile = volume.quantile(options.confidence);
   if (views.empty()) throw InvalidInput("views is empty; give at least one place to look from.");
-  std::vector<EndZone> zones;
-  for (const Xyz& view : views) zones.push_back(sight.zone(view));
+  const ViewTree tree(views);
+  TileQuestion ask{sight,
+                   *targets,
+                   options,
+                   quantile,
+                   volume.largest_ratio(),
+                   room_of(options.holds_for, volume, *targets),
+                   volume.surface().metric() == Metric::kVertical,
+                   volume.surface().sides() == Sides::kSolid,
+                   tree,
+                   {},
+                   {},
+                   {}};
+  look_around(ask, workers);
 
-  const bool any = options.seen_from == SeenFrom::kAny;
   HiddenVolumeBuilder builder(targets);
-  progress.begin(1, static_cast<double>(targets->ny));
-  workers.for_each(static_cast<std::size_t>(targets->ny), [&](std::size_t row) {
-    const int j = static_cast<int>(row);
-    std::vector<TargetAnswer> answers;
-    for (int i = 0; i < targets->nx; ++i) {
-      const TargetColumn& column = targets->column(i, j);
-      if (column.size() == 0) continue;
-      progress.check();
-      answers.assign(static_cast<std::size_t>(column.size()), TargetAnswer{});
-      EndZone target = sight.zone(targets->centre(i, j, column.first));
-      for (const EndZone& view : zones) {
-        const Xyz &from = view.place(), &to = target.place();
-        if (std::hypot(to.x - from.x, to.y - from.y) > options.max_distance_m) continue;
-        for (int k = column.first; k <= column.last; ++k) {
-          TargetAnswer& answer = answers[static_cast<std::size_t>(k - column.first)];
-          // Nothing more to gain.
-          if (any && answer.verdict == kVisible && answer.p >= 1) continue;
-          if (!any && answer.verdict == kHidden && answer.p <= 0) continue;
-          target.move_to_height(targets->height_of(k));
-          answer = (any ? better_of : worse_of)(answer, answer_of(sight.ratio(view, target), quantile));
-        }
-      }
-      builder.set_column(i, j, answers);
-    }
+  constexpr int kSide = TargetTile::kSide;
+  const int across = (targets->nx + kSide - 1) / kSide, down = (targets->ny + kSide - 1) / kSide;
+  const std::size_t tiles = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
+  progress.begin(1, static_cast<double>(tiles));
+  workers.for_each(tiles, [&](std::size_t n) {
+    const int j = static_cast<int>(n / static_cast<std::size_t>(across)),
+              i = static_cast<int>(n % static_cast<std::size_t>(across));
+    TargetTile tile(ask, i * kSide, j * kSide, progress);
+    tile.see();
+    tile.put_into(builder);
     progress.advance(1);
   });
   HiddenVolumeInfo info;

@@ -36,6 +36,25 @@ double height_over(const SurfaceFace& face, double x, double y) {
   return a.z + v * (b.z - a.z) + w * (c.z - a.z);
 }
 
+// What of a polygon lies where coordinate `axis` is at least (`above`) or at most `limit`: Sutherland and
+// Hodgman.
+std::vector<Xyz> cut_at(const std::vector<Xyz>& polygon, double Xyz::*axis, double limit, bool above) {
+  const auto depth = [&](const Xyz& p) { return above ? p.*axis - limit : limit - p.*axis; };
+  std::vector<Xyz> kept;
+  for (std::size_t n = 0; n < polygon.size(); ++n) {
+    const Xyz &a = polygon[n], &b = polygon[(n + 1) % polygon.size()];
+    const double da = depth(a), db = depth(b);
+    if (da >= 0) kept.push_back(a);
+    if ((da < 0) != (db < 0)) kept.push_back(a + (da / (da - db)) * (b - a));
+  }
+  return kept;
+}
+std::vector<Xyz> cut_to(const Box3& plan, std::vector<Xyz> polygon) {
+  for (double Xyz::*axis : {&Xyz::x, &Xyz::y})
+    polygon = cut_at(cut_at(polygon, axis, plan.low.*axis, true), axis, plan.high.*axis, false);
+  return polygon;
+}
+
 bool looks_up(const SurfaceFace& face) {
   const auto& [a, b, c] = face.corner;
   return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y) > 0;
@@ -68,6 +87,22 @@ TerrainSpan terrain_over(const Surface& surface, double x, double y, std::vector
     span.highest = std::isnan(span.highest) ? height : std::max(span.highest, height);
     if (!only_tops || looks_up(*face))
       span.ground = std::isnan(span.ground) ? height : std::min(span.ground, height);
+  }
+  return span;
+}
+
+TerrainSpan terrain_within(const Surface& surface, const Box3& plan, std::vector<std::uint32_t>& numbers) {
+  const Box3& bounds = surface.bounds();
+  surface.faces_near({{plan.low.x, plan.low.y, bounds.low.z}, {plan.high.x, plan.high.y, bounds.high.z}},
+                     numbers);
+  TerrainSpan span;
+  for (const std::uint32_t n : numbers) {
+    const std::optional<SurfaceFace> face = surface.face(n);
+    if (!face) continue;
+    for (const Xyz& corner : cut_to(plan, {face->corner.begin(), face->corner.end()})) {
+      span.ground = std::isnan(span.ground) ? corner.z : std::min(span.ground, corner.z);
+      span.highest = std::isnan(span.highest) ? corner.z : std::max(span.highest, corner.z);
+    }
   }
   return span;
 }

@@ -61,6 +61,10 @@ struct TerrainSpan {
 // `numbers` is room to work in.
 TerrainSpan terrain_over(const Surface&, double x, double y, std::vector<std::uint32_t>& numbers);
 
+// The lowest and the highest of all terrain over a rectangle (z of the box is not looked at), in `ground` and
+// `highest`; NaN where there is none.
+TerrainSpan terrain_within(const Surface&, const Box3& plan, std::vector<std::uint32_t>& numbers);
+
 struct LatticeOptions {
   double spacing_m = 10;        // in plan
   double height_spacing_m = 0;  // 0 = the lesser of spacing_m and a quarter of the ceiling

@@ -12,23 +12,35 @@ namespace {
 
 constexpr int kLeaf = 8;
 
-// The smallest low and the smallest high of every layer of a leaf.
-std::array<std::int32_t, kLeaf> least_of_layers(const RatioLeaf& leaf) {
-  std::array<std::int16_t, kLeaf> low, high;
-  low.fill(std::numeric_limits<std::int16_t>::max());
-  high.fill(std::numeric_limits<std::int16_t>::max());
+// The smallest low and high of every layer of a leaf, and the largest.
+struct LeafLayers {
+  std::array<std::int32_t, kLeaf> least, largest;
+};
+
+LeafLayers layers_of(const RatioLeaf& leaf) {
+  std::array<std::int16_t, kLeaf> least_low, least_high, largest_low, largest_high;
+  for (auto* least : {&least_low, &least_high}) least->fill(std::numeric_limits<std::int16_t>::max());
+  for (auto* largest : {&largest_low, &largest_high}) largest->fill(std::numeric_limits<std::int16_t>::min());
   const std::int32_t* values = leaf.buffer().data();
   for (int column = 0; column < kLeaf * kLeaf; ++column, values += kLeaf) {
     for (std::size_t k = 0; k < kLeaf; ++k) {
-      low[k] = std::min(low[k], static_cast<std::int16_t>(ordered_low(values[k])));
-      high[k] = std::min(high[k], static_cast<std::int16_t>(ordered_high(values[k])));
+      const auto low = static_cast<std::int16_t>(ordered_low(values[k]));
+      const auto high = static_cast<std::int16_t>(ordered_high(values[k]));
+      least_low[k] = std::min(least_low[k], low);
+      least_high[k] = std::min(least_high[k], high);
+      largest_low[k] = std::max(largest_low[k], low);
+      largest_high[k] = std::max(largest_high[k], high);
     }
   }
-  std::array<std::int32_t, kLeaf> least;
+  const auto packed = [](std::int16_t low, std::int16_t high) {
+    return pack(static_cast<double>(from_ordered(low)), static_cast<double>(from_ordered(high)));
+  };
+  LeafLayers layers;
   for (std::size_t k = 0; k < kLeaf; ++k) {
-    least[k] = pack(static_cast<double>(from_ordered(low[k])), static_cast<double>(from_ordered(high[k])));
+    layers.least[k] = packed(least_low[k], least_high[k]);
+    layers.largest[k] = packed(largest_low[k], largest_high[k]);
   }
-  return least;
+  return layers;
 }
 
 }  // namespace
@@ -102,6 +114,7 @@ void BlockColumns::lay_out(std::int32_t background) {
     }
   }
   layers_.assign(layers, background);
+  largest_.assign(layers, background);
 }
 
 void BlockColumns::fill(const RatioNode128& node, std::int32_t background) {
@@ -111,12 +124,15 @@ void BlockColumns::fill(const RatioNode128& node, std::int32_t background) {
     const openvdb::Coord origin = node.offsetToGlobalCoord(n);
     const Column& column = at(origin.x() >> 3, origin.y() >> 3);
     if (origin.z() < column.first) continue;
-    std::int32_t* layers = layers_.data() + column.offset + (origin.z() - column.first);
+    const std::size_t at = column.offset + static_cast<std::size_t>(origin.z() - column.first);
     if (is_leaf) {
-      const auto least = least_of_layers(*node.getTable()[n].getChild());
-      std::copy(least.begin(), least.end(), layers);
+      const LeafLayers layers = layers_of(*node.getTable()[n].getChild());
+      std::copy(layers.least.begin(), layers.least.end(), layers_.data() + at);
+      std::copy(layers.largest.begin(), layers.largest.end(), largest_.data() + at);
     } else {
-      std::fill_n(layers, kLeaf, node.getTable()[n].getValue());
+      const std::int32_t value = node.getTable()[n].getValue();
+      std::fill_n(layers_.data() + at, kLeaf, value);
+      std::fill_n(largest_.data() + at, kLeaf, value);
     }
   }
 }

@@ -2,7 +2,7 @@
 // What lies in each column of 8 x 8 voxels, layer by layer, in a few bytes: most leaves that a line passes
 // need not be read. Private to cpp/volume.
 //
-// Memory: 16 bytes a column, 4 a layer that has leaves (a leaf has 2 KiB). Cost: one pass over the leaves.
+// Memory: 16 bytes a column, 8 a layer that has leaves (a leaf has 2 KiB). Cost: one pass over the leaves.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +39,8 @@ class BlockColumns {
   }
   // pack(smallest low, smallest high) of the 64 voxels of layer `first` + n.
   const std::int32_t* layers(const Column& column) const { return layers_.data() + column.offset; }
+  // pack(largest low, largest high).
+  const std::int32_t* largest(const Column& column) const { return largest_.data() + column.offset; }
   // Above this layer there is nothing but background in the column of 128 x 128.
   int end_128(int i128, int j128) const {
     const int i = i128 - first_i8_ / kAcross, j = j128 - first_j8_ / kAcross;
@@ -60,7 +62,7 @@ class BlockColumns {
   int first_i8_ = 0, first_j8_ = 0, cols_ = 0, rows_ = 0;
   Column beyond_;  // of all columns without nodes
   std::vector<Column> columns_;
-  std::vector<std::int32_t> layers_;
+  std::vector<std::int32_t> layers_, largest_;
   std::vector<int> ends_128_;
 };
 

@@ -86,19 +86,18 @@ VolumeRays::VolumeRays(const ErrorVolume& volume)
     : volume_(volume),
       columns_(std::make_unique<BlockColumns>(volume.trees().ratios, Workers(Workers::count_here()))) {}
 
-RayWalk VolumeRays::walk(const VolumeLine& line) const {
+WalkedTrees VolumeRays::walked() const {
   const ErrorVolume::Trees& trees = volume_.trees();
   const bool columns = volume_.surface().metric() == Metric::kVertical;
-  return {{trees.ratios, trees.ambiguous, columns ? &volume_.unknown_columns() : nullptr, volume_.voxel_m(),
-           volume_.voxel_height_m(), *columns_},
-          line};
+  return {trees.ratios,      trees.ambiguous,           columns ? &volume_.unknown_columns() : nullptr,
+          volume_.voxel_m(), volume_.voxel_height_m(), *columns_};
 }
 
 VolumeRays::~VolumeRays() = default;
 
 RatioInterval VolumeRays::least(const VolumeLine& line, double t0, double t1) const {
   const float beyond_all = volume_.beyond_ratio();
-  RayWalk walk = this->walk(line);
+  RayWalk walk(walked(), line);
   if (volume_.surface().sides() == Sides::kSheet) {
     Passage passage{beyond_all, beyond_all, 0, 0, 0, volume_.trees().ratios.background()};
     walk.run(t0, t1, passage);
@@ -112,7 +111,7 @@ RatioInterval VolumeRays::least(const VolumeLine& line, double t0, double t1) co
 }
 
 double VolumeRays::first(const VolumeLine& line, double ratio, double t0, double t1) const {
-  RayWalk walk = this->walk(line);
+  RayWalk walk(walked(), line);
   FirstBelow first{static_cast<float>(ratio), volume_.surface().sides() == Sides::kSheet};
   walk.run(t0, t1, first);
   return first.t;

@@ -6,7 +6,7 @@
 // - above the terrain or within it - the column is crossed in one step, and so is a leaf none of whose layers
 // passed could change the answer; what is left is walked voxel by voxel.
 // A line passes a voxel when the two meet; places on a face between two voxels belong to either one.
-// Cost: a few microseconds for a line of kilometres; memory of VolumeRays: some 60 bytes per 64 voxel
+// Cost: a few microseconds for a line of kilometres; memory of VolumeRays: some 100 bytes per 64 voxel
 // columns.
 #pragma once
 
@@ -26,8 +26,21 @@ struct VolumeLine {
   Xyz at(double t) const { return {from.x + t * (to.x - from.x), from.y + t * (to.y - from.y), height(t)}; }
 };
 
-class RayWalk;
+// Every line from a place of one box to a place of another.
+struct VolumeBeam {
+  Box3 from, to;
+  double least_drop = 0, most_drop = 0;  // of the lines
+};
+// Shares of a line.
+struct LinePart {
+  double begin = 0, end = 1;
+};
+// How closely a beam looks: at blocks of 8 x 8 columns, or, where these do not tell, at voxels.
+enum class Grain { kBlocks, kVoxels };
+
+struct WalkedTrees;
 class BlockColumns;
+class BeamWalk;
 
 class VolumeRays {
  public:
@@ -53,8 +66,21 @@ class VolumeRays {
 
   static constexpr double kNever = 2;
 
+  // Proofs for all lines of a beam at once; false = not proven. Nothing is proven of boxes that overlap both
+  // in x and in y. abs(ratio) <= K. Cost: some nanoseconds for each block, or voxel, of the beam's floor.
+  //
+  // Every place of every line within its part [begin, end] has k >= ratio.
+  bool clear(const VolumeBeam&, const LinePart&, double ratio, Grain) const;
+  // Every line has k <= -ratio somewhere within its part. Not for sheets: their inside is too thin.
+  bool blocked(const VolumeBeam&, const LinePart&, double ratio, Grain) const;
+  // The lower bound that least() gives is not above `ratio` for any line. Not for sheets.
+  bool doubtful(const VolumeBeam&, const LinePart&, double ratio, Grain) const;
+
  private:
-  RayWalk walk(const VolumeLine&) const;
+  WalkedTrees walked() const;
+  BeamWalk walk(const VolumeBeam&) const;
+  template <class OfBlock, class OfVoxel, class May>
+  bool any_section(const VolumeBeam&, const LinePart&, Grain, const OfBlock&, const OfVoxel&, const May&) const;
 
   const ErrorVolume& volume_;
   std::unique_ptr<const BlockColumns> columns_;

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sight/end_room.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "sight/face_under.h"
+#include "sight/line_ends.h"
+#include "volume/error_volume.h"
+#include "volume/triangle.h"
+
+namespace sightbound {
+
+namespace {
+
+// Bundles whose lines differ more in length, or move more within the zone (cells), are left to smaller boxes.
+constexpr double kMostUneven = 1.25, kMostMoved = 0.25;
+constexpr int kSteps = 32;  // along an end zone in space
+
+double plan_norm(const Xyz& a) { return std::hypot(a.x, a.y); }
+
+Xyz moved_at(const LineBundle& bundle, double t) {
+  Xyz moved = (1 - t) * bundle.from_room + t * bundle.to_room;
+  moved.z += bundle.drop_spread;
+  return moved;
+}
+
+// The part of every line that lies in the end zone of one of them.
+LinePart zone_of_any(const LineBundle& bundle, double spacing_m, bool from_start) {
+  const double zone = std::min(kEndZoneCells * spacing_m / bundle.shortest, 1.0),
+               end = kAtEnd * spacing_m / bundle.longest;
+  return from_start ? LinePart{end, std::min(zone, 1 - end)} : LinePart{std::max(1 - zone, end), 1 - end};
+}
+
+// Slopes along x and y, without sign.
+Xy slopes_of(const SurfaceFace& face) {
+  const Xyz normal = cross(face.corner[1] - face.corner[0], face.corner[2] - face.corner[0]);
+  constexpr double kVertical = std::numeric_limits<double>::infinity();
+  if (normal.z == 0) return {kVertical, kVertical};
+  return {std::abs(normal.x / normal.z), std::abs(normal.y / normal.z)};
+}
+
+// sigma_g is not above this anywhere on the face. No place of a triangle is farther from all corners than the
+// longest side over sqrt(3).
+double most_between(const SurfaceFace& face, const GrowthProfile& profile) {
+  const double amplitude = *std::max_element(face.amplitude.begin(), face.amplitude.end());
+  if (!(amplitude > 0)) return 0;
+  double longest = 0;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const Xyz side = face.corner[(n + 1) % 3] - face.corner[n];
+    const auto& m = face.to_ground;
+    longest = std::max({longest, norm(side),
+                        std::hypot(m[0] * side.x + m[1] * side.y, m[2] * side.x + m[3] * side.y)});
+  }
+  return amplitude * profile(longest / std::numbers::sqrt3, amplitude);
+}
+
+bool any_unknown(const ErrorVolume& volume, const Xyz& middle, double reach) {
+  const double side = 8 * volume.voxel_m();
+  const auto block = [&](double at) { return static_cast<int>(std::floor(at / side)); };
+  for (int j = block(middle.y - reach); j <= block(middle.y + reach); ++j) {
+    for (int i = block(middle.x - reach); i <= block(middle.x + reach); ++i) {
+      if (volume.unknown_columns().of_8(i, j) != PlanState::kNone) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+EndRoom::EndRoom(const ErrorVolume& volume, const Xyz& middle, const Xyz& room)
+    : surface_(&volume.surface()), middle_(middle), room_(room) {
+  const bool vertical = surface_->metric() == Metric::kVertical;
+  constexpr double kAnyHeight = 1e6;
+  const double reach =
+      (kEndZoneCells * kMostUneven + kMostMoved) * surface_->spacing_m() + (vertical ? plan_norm(room) : norm(room));
+  const double up = vertical ? kAnyHeight : reach;
+  std::vector<std::uint32_t> near;
+  surface_->faces_near({{middle.x - reach, middle.y - reach, middle.z - up},
+                        {middle.x + reach, middle.y + reach, middle.z + up}},
+                       near);
+  for (const std::uint32_t number : near) {
+    const auto face = surface_->face(number);
+    if (!face) continue;
+    const Xy slopes = slopes_of(*face);
+    rise_x_ = std::max(rise_x_, slopes.x);
+    rise_y_ = std::max(rise_y_, slopes.y);
+    most_between_ = std::max(most_between_, most_between(*face, surface_->profile()));
+    faces_.push_back(*face);
+  }
+  most_between_ = std::max(most_between_, kLeastSigma);
+  complete_ = !vertical || !any_unknown(volume, middle, reach);
+}
+
+bool EndRoom::tells(const LineBundle& bundle, bool from_start) const {
+  if (!complete_ || !(bundle.shortest > 0) || bundle.longest > kMostUneven * bundle.shortest) return false;
+  const double spacing = surface_->spacing_m();
+  const LinePart zone = zone_of_any(bundle, spacing, from_start);
+  const Xyz moved = from_start ? zone.end * bundle.to_room : (1 - zone.begin) * bundle.from_room;
+  return zone.begin < zone.end && norm(moved) <= kMostMoved * spacing;
+}
+
+bool EndRoom::clear(const LineBundle& bundle, bool from_start, double ratio) const {
+  if (!tells(bundle, from_start)) return false;
+  const LinePart zone = zone_of_any(bundle, surface_->spacing_m(), from_start);
+  return surface_->metric() == Metric::kVertical ? clear_in_plan(bundle, zone, ratio)
+                                                 : clear_in_space(bundle, zone, ratio);
+}
+
+bool EndRoom::clear_in_plan(const LineBundle& bundle, const LinePart& zone, double ratio) const {
+  // Between two crossings the curve of the line is below its chord by this much at most.
+  const double length = zone.end - zone.begin, sag = bundle.middle.drop * length * length / 4;
+  const double needed = ratio * most_between_ + sag;
+  double covered = 0;
+  for (const SurfaceFace& face : faces_) {
+    const FaceUnder under(face, surface_->profile(), bundle.middle);
+    const double a = std::max(under.from(), zone.begin), b = std::min(under.to(), zone.end);
+    if (under.crossings() < 2 || !(a <= b)) continue;
+    covered += b - a;
+    for (const double t : {a, b}) {
+      if (!(under.clearance(t) - rise(moved_at(bundle, t)) >= needed)) return false;
+    }
+  }
+  return covered >= length * (1 - kUncovered);
+}
+
+bool EndRoom::clear_in_space(const LineBundle& bundle, const LinePart& zone, double ratio) const {
+  const double step = (zone.end - zone.begin) / kSteps;
+  const double between_steps = step * bundle.longest / 2;
+  for (int n = 0; n <= kSteps; ++n) {
+    const double t = zone.begin + n * step;
+    const Xyz at = bundle.middle.at(t);
+    const double needed = ratio * most_between_ + norm(moved_at(bundle, t)) + between_steps;
+    for (const SurfaceFace& face : faces_) {
+      if (!(norm(at - closest_on(face.corner, at)) >= needed)) return false;
+    }
+  }
+  return true;
+}
+
+bool EndRoom::blocked(const LineBundle& bundle, bool from_start, double ratio) const {
+  if (surface_->metric() != Metric::kVertical || !tells(bundle, from_start)) return false;
+  const double zone = std::min(kEndZoneCells * surface_->spacing_m() / bundle.longest, 1.0),
+               end = kAtEnd * surface_->spacing_m() / bundle.shortest;
+  const LinePart part = from_start ? LinePart{end, zone} : LinePart{1 - zone, 1 - end};
+  for (const SurfaceFace& face : faces_) {
+    const FaceUnder under(face, surface_->profile(), bundle.middle);
+    for (int n = 0; n < under.crossings(); ++n) {
+      const double t = under.crossing(n);
+      if (t < part.begin || t > part.end) continue;
+      if (under.clearance(t) + rise(moved_at(bundle, t)) <= -ratio * most_between_) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace sightbound
