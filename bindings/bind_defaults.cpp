@@ -38,7 +38,8 @@ py::dict defaults() {
       "horizontal_rmse"_a = model.horizontal_rmse, "geologic_model"_a = name_of(model.geologic_shape),
       "vertical_unit"_a = "auto", "band"_a = 1, "terrain_table"_a = default_terrain_table(),
       "target_spacing"_a = sight.targets.spacing_m, "target_ceiling"_a = sight.targets.ceiling_m,
-      "seen_from"_a = name_of(sight.seen_from), "most_lines"_a = sight.most_lines);
+      "seen_from"_a = name_of(sight.seen_from), "holds_for"_a = name_of(sight.holds_for),
+      "most_lines"_a = sight.most_lines);
 }
 
 }  // namespace

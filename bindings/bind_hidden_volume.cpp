@@ -46,6 +46,9 @@ void bind_options(py::module_& m) {
           "seen_from", [](const VolumeSightOptions& self) { return name_of(self.seen_from); },
           [](VolumeSightOptions& self, const std::string& name) { self.seen_from = seen_from(name); })
       .def_property(
+          "holds_for", [](const VolumeSightOptions& self) { return name_of(self.holds_for); },
+          [](VolumeSightOptions& self, const std::string& name) { self.holds_for = holds_for(name); })
+      .def_property(
           "height_reference", [](const VolumeSightOptions& self) { return name_of(self.height_reference); },
           [](VolumeSightOptions& self, const std::string& name) {
             self.height_reference = height_reference_from(name);

@@ -35,6 +35,7 @@ _PARAMETER_OF = {
     "view_height_to": "OBSERVER_HEIGHT_TO",
     "view_spacing": "VIEW_SPACING",
     "seen_from": "SEEN_FROM",
+    "holds_for": "HOLDS_FOR",
     "most_lines": "MOST_LINES",
     "voxel_m": "VOXEL",
     "voxel_height": "VOXEL_HEIGHT",

@@ -66,6 +66,9 @@ def views_block():
         blocks.places(_LAYER, tr("Observers (points, or polygons in which they may be)")),
         *heights,
         blocks.choice("SEEN_FROM", tr("A place counts as seen when seen from"), ["any", "all"], default("seen_from")),
+        blocks.advanced(
+            blocks.choice("HOLDS_FOR", tr("Claims hold for"), ["place", "voxel", "target"], default("holds_for"))
+        ),
         blocks.advanced(fields),
         blocks.advanced(blocks.metres("VIEW_SPACING", tr("Spacing of the places within polygons"))),
         blocks.advanced(blocks.metres("MAX_DISTANCE", tr("Maximum distance (empty: all)"))),
@@ -114,6 +117,7 @@ def sight_arguments(algorithm, parameters, context):
 
     return {
         "seen_from": word(algorithm, parameters, "SEEN_FROM", context),
+        "holds_for": word(algorithm, parameters, "HOLDS_FOR", context),
         "view_spacing": length("VIEW_SPACING"),
         "max_distance": length("MAX_DISTANCE"),
         "height_reference": word(algorithm, parameters, "HEIGHT_REFERENCE", context),

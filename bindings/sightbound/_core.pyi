@@ -380,6 +380,7 @@ class VolumeSightOptions:
     refraction: float
     curvature: bool
     seen_from: str
+    holds_for: str
     height_reference: str
     max_distance: float
     view_spacing: float

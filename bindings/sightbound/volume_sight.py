@@ -45,6 +45,7 @@ def volume_viewshed(
     target_height_spacing: float | None = None,
     confidence: float = _DEFAULTS["confidence"],
     seen_from: str = _DEFAULTS["seen_from"],
+    holds_for: str = _DEFAULTS["holds_for"],
     view_spacing: float | None = None,
     max_distance: float | None = None,
     refraction: float = _DEFAULTS["refraction"],
@@ -72,8 +73,10 @@ def volume_viewshed(
         target_height_spacing: in height; None for the lesser of target_spacing and a quarter of the ceiling.
         confidence: of a claim, between 0 and 1.
         seen_from: "any": a target counts as seen when it is seen from some place of the views; "all": from every place.
-        view_spacing: between the places of an area, metres; None for target_spacing. Areas are looked from at these
-            places alone: what is hidden from all of them may be seen from between them.
+        holds_for: what a claim speaks of: "place", the target's centre alone; "voxel", all places within half a voxel of
+            the error volume; "target", all of the target's box above ground. Claims that do not hold so far are uncertain.
+        view_spacing: between the places of an area, metres; None for an eighth of the area, at least target_spacing. Each
+            stands for a cell: hidden means hidden from all of the area, visible seen from one of the places.
         max_distance: metres in plan; None for no limit. Targets beyond are not asked.
         refraction: coefficient of refraction; 0 for none.
         curvature: False for a flat Earth.
@@ -103,6 +106,7 @@ def estimate_volume_viewshed(
     target_height_spacing: float | None = None,
     confidence: float = _DEFAULTS["confidence"],
     seen_from: str = _DEFAULTS["seen_from"],
+    holds_for: str = _DEFAULTS["holds_for"],
     view_spacing: float | None = None,
     max_distance: float | None = None,
     refraction: float = _DEFAULTS["refraction"],
@@ -130,6 +134,7 @@ def subtract_observer(
     view_height_to: Optional[Numbers] = None,
     height: float = 1.8,
     seen_from: str = _DEFAULTS["seen_from"],
+    holds_for: str = _DEFAULTS["holds_for"],
     view_spacing: float | None = None,
     max_distance: float | None = None,
     refraction: float = _DEFAULTS["refraction"],
@@ -178,6 +183,7 @@ class _Job:
         options.refraction = arguments.number("refraction", given["refraction"])
         options.curvature = bool(given["curvature"])
         options.seen_from = arguments.word("seen_from", given["seen_from"])
+        options.holds_for = arguments.word("holds_for", given["holds_for"])
         options.height_reference = arguments.word("height_reference", given["height_reference"])
         options.max_distance = arguments.limit("max_distance", given["max_distance"])
         options.target_spacing = arguments.number("target_spacing", given["target_spacing"])

@@ -13,11 +13,13 @@ std::string name_of(Stand);            // "model", "ground"
 std::string name_of(Combine);          // "best", "worst"
 std::string name_of(HeightReference);  // "ground", "absolute"
 std::string name_of(SeenFrom);         // "any", "all"
+std::string name_of(HoldsFor);         // "place", "voxel", "target"
 
 // Throw InvalidInput that names the option, the word and those allowed.
 Stand stand_from(const std::string& name);
 Combine combine_from(const std::string& name);
 HeightReference height_reference_from(const std::string& name);
 SeenFrom seen_from(const std::string& name);
+HoldsFor holds_for(const std::string& name);
 
 }  // namespace sightbound

@@ -121,7 +121,15 @@ std::optional<std::vector<PlanCell>> squares_within(const Rings& rings, double s
   return found;
 }
 
-// Squares that an edge passes and whose middle is outside hold the rest of the polygon: the nearest cell takes
+// Numbers of the squares that [from, to] enters; not those it only touches.
+struct Squares {
+  double first, last;
+  Squares(double from, double to, double side)
+      : first(std::floor(from / side + kTouch)), last(std::ceil(to / side - kTouch) - 1) {}
+  static constexpr double kTouch = 1e-9;
+};
+
+// Squares that an edge enters and whose middle is outside hold the rest of the polygon: the nearest cell takes
 // each of them in.
 void take_in_rims(const Rings& rings, double side, std::vector<PlanCell>& cells) {
   std::set<std::pair<double, double>> rims;
@@ -129,14 +137,14 @@ void take_in_rims(const Rings& rings, double side, std::vector<PlanCell>& cells)
     for (std::size_t n = 0, m = ring.size() - 1; n < ring.size(); m = n++) {
       Xyz a = ring[m], b = ring[n];
       if (a.x > b.x) std::swap(a, b);
-      for (double i = std::floor(a.x / side); i <= std::floor(b.x / side); ++i) {
-        const auto y_at = [&](double x) {
-          return b.x == a.x ? a.y : a.y + (std::clamp(x, a.x, b.x) - a.x) * (b.y - a.y) / (b.x - a.x);
-        };
-        double low = std::min(y_at(i * side), y_at((i + 1) * side)),
-               high = std::max(y_at(i * side), y_at((i + 1) * side));
-        if (a.x == b.x) low = std::min(a.y, b.y), high = std::max(a.y, b.y);
-        for (double j = std::floor(low / side); j <= std::floor(high / side); ++j) rims.emplace(i, j);
+      const auto y_at = [&](double x) {
+        return a.y + (std::clamp(x, a.x, b.x) - a.x) * (b.y - a.y) / (b.x - a.x);
+      };
+      const Squares columns(a.x, b.x, side);
+      for (double i = columns.first; i <= columns.last; ++i) {
+        const double y0 = a.x == b.x ? a.y : y_at(i * side), y1 = a.x == b.x ? b.y : y_at((i + 1) * side);
+        const Squares rows(std::min(y0, y1), std::max(y0, y1), side);
+        for (double j = rows.first; j <= rows.last; ++j) rims.emplace(i, j);
       }
     }
   }

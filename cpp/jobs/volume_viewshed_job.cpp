@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
+#include <random>
 #include <utility>
 
 #include "base/error.h"
@@ -15,7 +17,8 @@ namespace sightbound {
 
 namespace {
 
-constexpr std::size_t kTimedColumns = 1024, kTimedViews = 16;  // to tell how long a line takes
+constexpr int kTile = 16;           // columns; targets are timed by the square
+constexpr double kTimedSeconds = 1.5;  // for an estimate
 
 // One job: views placed, targets laid out, memory asked for.
 struct Prepared {
@@ -107,28 +110,39 @@ class Lines {
   VolumeSight sight_;
 };
 
-// The same targets, all but some `columns` left out.
-std::shared_ptr<const TargetLattice> sample_of(const TargetLattice& all, std::size_t columns) {
+// The same targets, all left out but those in squares [from, to) of a fixed order that strews them.
+std::shared_ptr<const TargetLattice> some_of(const TargetLattice& all, std::size_t from, std::size_t to) {
   auto some = std::make_shared<TargetLattice>(all);
-  const std::size_t step = columns == 0 ? 0 : std::max<std::size_t>(all.columns.size() / columns, 1);
-  for (std::size_t n = 0; n < some->columns.size(); ++n) {
-    // Another place in each stretch, so that samples do not line up.
-    if (step == 0 || n % step != n / step * 7919 % step) some->columns[n].last = some->columns[n].first - 1;
+  const auto across = static_cast<std::size_t>((all.nx + kTile - 1) / kTile),
+             squares = across * static_cast<std::size_t>((all.ny + kTile - 1) / kTile);
+  std::vector<std::size_t> places(squares);
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  std::shuffle(places.begin(), places.end(), std::mt19937(1));
+  std::vector<bool> taken(squares, false);
+  for (std::size_t n = from; n < std::min(to, squares); ++n) taken[places[n]] = true;
+  for (int j = 0; j < all.ny; ++j) {
+    for (int i = 0; i < all.nx; ++i) {
+      TargetColumn& column = some->columns[all.number(i, j)];
+      const auto square = static_cast<std::size_t>(j / kTile) * across + static_cast<std::size_t>(i / kTile);
+      if (!taken[square]) column.last = column.first - 1;
+    }
   }
   return some;
 }
 
-// From some lines, less what a viewshed without any takes.
+// From some of the targets, less what a viewshed without any takes.
 double seconds_of(const Prepared& job, const Lines& lines, const Workers& workers) {
   Prepared part = job;
-  part.views.places.resize(std::min(part.views.places.size(), kTimedViews));
-  part.targets = sample_of(*job.targets, 0);
-  const double idle = lines.time_of(part, workers);
-  part.targets = sample_of(*job.targets, kTimedColumns);
-  const double asked =
-      static_cast<double>(part.targets->targets()) * static_cast<double>(part.views.places.size());
-  if (asked == 0) return idle;
-  return idle + std::max(lines.time_of(part, workers) - idle, 0.0) * job.estimate.lines / asked;
+  part.targets = some_of(*job.targets, 0, 0);
+  const double idle = lines.time_of(part, workers), all = static_cast<double>(job.estimate.targets);
+  double spent = 0, asked = 0;
+  std::size_t from = 0;
+  for (std::size_t to = 8; spent < kTimedSeconds && asked < all; from = std::exchange(to, 3 * to)) {
+    part.targets = some_of(*job.targets, from, to);
+    spent += std::max(lines.time_of(part, workers) - idle, 0.0);
+    asked += static_cast<double>(part.targets->targets());
+  }
+  return asked > 0 ? idle + spent * all / asked : idle;
 }
 
 }  // namespace

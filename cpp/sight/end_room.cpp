@@ -57,12 +57,23 @@ double most_between(const SurfaceFace& face, const GrowthProfile& profile) {
   return amplitude * profile(longest / std::numbers::sqrt3, amplitude);
 }
 
-bool any_unknown(const ErrorVolume& volume, const Xyz& middle, double reach) {
-  const double side = 8 * volume.voxel_m();
-  const auto block = [&](double at) { return static_cast<int>(std::floor(at / side)); };
-  for (int j = block(middle.y - reach); j <= block(middle.y + reach); ++j) {
-    for (int i = block(middle.x - reach); i <= block(middle.x + reach); ++i) {
-      if (volume.unknown_columns().of_8(i, j) != PlanState::kNone) return true;
+// Is there a place without ground under one of the lines?
+bool any_unknown(const ErrorVolume& volume, const LineBundle& bundle, const LinePart& part) {
+  const PlanMask& unknown = volume.unknown_columns();
+  const auto voxel = [&](double at) { return static_cast<int>(std::floor(at / volume.voxel_m())); };
+  const Xyz a = bundle.middle.at(part.begin), b = bundle.middle.at(part.end);
+  const Xyz at_a = moved_at(bundle, part.begin), at_b = moved_at(bundle, part.end);
+  const double x = std::max(at_a.x, at_b.x), y = std::max(at_a.y, at_b.y);
+  const int i0 = voxel(std::min(a.x, b.x) - x), i1 = voxel(std::max(a.x, b.x) + x),
+            j0 = voxel(std::min(a.y, b.y) - y), j1 = voxel(std::max(a.y, b.y) + y);
+  for (int j8 = j0 >> 3; j8 <= j1 >> 3; ++j8) {
+    for (int i8 = i0 >> 3; i8 <= i1 >> 3; ++i8) {
+      if (unknown.of_8(i8, j8) == PlanState::kNone) continue;
+      for (int j = std::max(j0, 8 * j8); j <= std::min(j1, 8 * j8 + 7); ++j) {
+        for (int i = std::max(i0, 8 * i8); i <= std::min(i1, 8 * i8 + 7); ++i) {
+          if (unknown.at(i, j)) return true;
+        }
+      }
     }
   }
   return false;
@@ -71,7 +82,7 @@ bool any_unknown(const ErrorVolume& volume, const Xyz& middle, double reach) {
 }  // namespace
 
 EndRoom::EndRoom(const ErrorVolume& volume, const Xyz& middle, const Xyz& room)
-    : surface_(&volume.surface()), middle_(middle), room_(room) {
+    : volume_(&volume), surface_(&volume.surface()), middle_(middle), room_(room) {
   const bool vertical = surface_->metric() == Metric::kVertical;
   constexpr double kAnyHeight = 1e6;
   const double reach =
@@ -91,15 +102,15 @@ EndRoom::EndRoom(const ErrorVolume& volume, const Xyz& middle, const Xyz& room)
     faces_.push_back(*face);
   }
   most_between_ = std::max(most_between_, kLeastSigma);
-  complete_ = !vertical || !any_unknown(volume, middle, reach);
 }
 
 bool EndRoom::tells(const LineBundle& bundle, bool from_start) const {
-  if (!complete_ || !(bundle.shortest > 0) || bundle.longest > kMostUneven * bundle.shortest) return false;
+  if (!(bundle.shortest > 0) || bundle.longest > kMostUneven * bundle.shortest) return false;
   const double spacing = surface_->spacing_m();
   const LinePart zone = zone_of_any(bundle, spacing, from_start);
   const Xyz moved = from_start ? zone.end * bundle.to_room : (1 - zone.begin) * bundle.from_room;
-  return zone.begin < zone.end && norm(moved) <= kMostMoved * spacing;
+  if (!(zone.begin < zone.end && norm(moved) <= kMostMoved * spacing)) return false;
+  return surface_->metric() == Metric::kNormal || !any_unknown(*volume_, bundle, zone);
 }
 
 bool EndRoom::clear(const LineBundle& bundle, bool from_start, double ratio) const {

@@ -41,12 +41,12 @@ class EndRoom {
   bool clear_in_plan(const LineBundle&, const LinePart&, double ratio) const;
   bool clear_in_space(const LineBundle&, const LinePart&, double ratio) const;
 
+  const ErrorVolume* volume_ = nullptr;
   const Surface* surface_ = nullptr;
   Xyz middle_, room_;
   std::vector<SurfaceFace> faces_;
   double rise_x_ = 0, rise_y_ = 0;          // steepest slopes along x and y
   double most_between_ = 0;                 // sigma_g, metres
-  bool complete_ = true;                    // there is ground everywhere around
 };
 
 }  // namespace sightbound

@@ -48,14 +48,14 @@ TEST(ViewPlaces, APointStandsOnTheGround) {
   const ViewPlaces found =
       view_places(*surface, {{{{{1037, 2050}}}, 1.5, 1.5, ""}}, HeightReference::kGround, 10);
   ASSERT_EQ(found.places.size(), 1u);
-  EXPECT_NEAR(found.places[0].x, 37, 1e-9);
-  EXPECT_NEAR(found.places[0].y, 50, 1e-9);
-  EXPECT_NEAR(found.places[0].z, 3.7 + 1.5, 1e-6);
+  EXPECT_NEAR(found.places[0].place.x, 37, 1e-9);
+  EXPECT_NEAR(found.places[0].place.y, 50, 1e-9);
+  EXPECT_NEAR(found.places[0].place.z, 3.7 + 1.5, 1e-6);
   const ViewPlaces absolute =
       view_places(*surface, {{{{{1037, 2050}}}, 40, 45, "mast"}}, HeightReference::kAbsolute, 2);
   ASSERT_EQ(absolute.places.size(), 4u);  // both ends, at most 2 m apart
-  EXPECT_EQ(absolute.places.front().z, 40);
-  EXPECT_EQ(absolute.places.back().z, 45);
+  EXPECT_EQ(absolute.places.front().place.z, 40);
+  EXPECT_EQ(absolute.places.back().place.z, 45);
   EXPECT_TRUE(says(absolute.as_json[0], R"("name":"mast")"));
 }
 
@@ -66,7 +66,7 @@ TEST(ViewPlaces, APolygonHasPlacesInside) {
   const ViewPlaces found = view_places(*surface, {triangle}, HeightReference::kGround, 10);
   EXPECT_GE(found.places.size(), 45u);
   EXPECT_LE(found.places.size(), 55u);
-  for (const Xyz& place : found.places) {
+  for (const auto& [place, cell] : found.places) {
     EXPECT_GT(place.x, 50);
     EXPECT_GT(place.y, 50);
     EXPECT_LE(place.x + place.y, 200 + 1e-9);
@@ -93,18 +93,51 @@ TEST(ViewPlaces, HolesHaveNoPlaces) {
   const auto within = [](const Xyz& place, double from, double to) {
     return place.x > from && place.x < to && place.y > from && place.y < to;
   };
-  for (const Xyz& place : found.places)
+  for (const auto& [place, cell] : found.places)
     EXPECT_TRUE(!within(place, 70, 130) || within(place, 90, 110)) << place.x << ' ' << place.y;
   EXPECT_TRUE(says(found.as_json[0], R"("outline":[[1050.0,2050.0])"));
   EXPECT_TRUE(says(found.as_json[0], R"("further_rings":[[)"));
   // What is left of an area that is nearly all hole still has its place.
   const ViewVolume rim{{square(1050, 2050, 100), square(1050.5, 2050.5, 99)}, 2, 2, ""};
-  for (const Xyz& place : view_places(*surface, {rim}, HeightReference::kGround, 40).places)
+  for (const auto& [place, cell] : view_places(*surface, {rim}, HeightReference::kGround, 40).places)
     EXPECT_FALSE(within(place, 50.5, 149.5));
   EXPECT_TRUE(
       says(complaint(surface, {{square(1050, 2050, 10), square(1050, 2050, 10)}, 1, 1, ""}), "without area"));
   EXPECT_TRUE(
       says(complaint(surface, {{square(1050, 2050, 10), {{1055, 2055}}}, 1, 1, ""}), "too few corners"));
+}
+
+// Wherever somebody may be in the area, a cell holds the place.
+TEST(ViewPlaces, CellsCoverTheArea) {
+  const auto surface = slope(1000, 2000, "");
+  const ViewVolume triangle{{{{1052, 2057}, {1147, 2061}, {1071, 2143}}}, 2, 5, ""};
+  for (const double spacing : {4.0, 10.0, 30.0, 70.0}) {
+    const ViewPlaces found = view_places(*surface, {triangle}, HeightReference::kGround, spacing);
+    for (int n = 0; n < 4000; ++n) {
+      // Even over the triangle.
+      double u = std::fmod(n * 0.7548776662, 1.0), v = std::fmod(n * 0.5698402910, 1.0);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const double x = 52 + u * 95 + v * 19, y = 57 + u * 4 + v * 86, z = x / 10 + 2 + n % 4;
+      EXPECT_TRUE(std::ranges::any_of(found.places, [&](const ViewPlace& view) {
+        const auto& [low, high] = view.cell;
+        return x >= low.x && x <= high.x && y >= low.y && y <= high.y && z >= low.z - 1e-4 && z <= high.z + 1e-4;
+      })) << spacing << ": " << x << ' ' << y << ' ' << z;
+    }
+    for (const auto& [place, cell] : found.places) EXPECT_LE(cell.high.x - cell.low.x, 3 * spacing);
+  }
+  // Squares beside the area are left alone.
+  for (const auto& [place, cell] :
+       view_places(*surface, {{{square(1050, 2050, 20)}, 2, 2, ""}}, HeightReference::kGround, 10).places) {
+    EXPECT_EQ(cell.high.x - cell.low.x, 10);
+    EXPECT_NEAR(cell.high.z - cell.low.z, 1, 1e-5);  // as the ground rises
+  }
+}
+
+TEST(ViewPlaces, SpacingIsAnEighthOfTheAreaWhereNoneIsGiven) {
+  const auto surface = slope(1000, 2000, "");
+  const ViewVolume area{{square(1020, 2020, 160)}, 2, 2, ""};
+  EXPECT_EQ(view_places(*surface, {area}, HeightReference::kGround, 0, 10).places.size(), 64u);
+  EXPECT_EQ(view_places(*surface, {area}, HeightReference::kGround, 0, 40).places.size(), 16u);
 }
 
 TEST(ViewPlaces, SeveralPartsHavePlacesInEach) {
@@ -131,7 +164,7 @@ TEST(ViewPlaces, WrongViewsAreNamed) {
   EXPECT_TRUE(says(complaint(surface, {{{{1050, 2050}, {1060, 2050}}}, 1, 1, ""}), "two corners"));
   EXPECT_TRUE(
       says(complaint(surface, {{{{1050, 2050}, {1060, 2050}, {1070, 2050}}}, 1, 1, ""}), "without area"));
-  EXPECT_TRUE(says(complaint(surface, {{{{1050, 2050}}}, 1, 1, ""}, 0), "view_spacing is 0"));
+  EXPECT_TRUE(says(complaint(surface, {{{{1050, 2050}}}, 1, 1, ""}, -1), "view_spacing is -1"));
 }
 
 TEST(GroundBend, IsTheEllipsoids) {
