@@ -69,8 +69,8 @@ void time_viewshed(const VolumeSight& sight, const char* what, const std::vector
   const double seconds = seconds_since(start);
   const VerdictVolumes volumes = hidden.volumes();
   const double all = volumes.hidden_m3 + volumes.uncertain_m3 + volumes.visible_m3;
-  std::printf("%s, %zu targets: %.1f s (%.1f %% hidden, %.1f %% uncertain)\n", what, targets->targets(), seconds,
-              100 * volumes.hidden_m3 / all, 100 * volumes.uncertain_m3 / all);
+  std::printf("%s, %zu targets: %.1f s (%.1f %% hidden, %.1f %% uncertain)\n", what, targets->targets(),
+              seconds, 100 * volumes.hidden_m3 / all, 100 * volumes.uncertain_m3 / all);
   std::fflush(stdout);
 }
 
@@ -82,7 +82,8 @@ std::vector<ViewPlace> patrol_square(const DemSurface& surface, double side, dou
     for (double x = high.x / 2 - side / 2 + spacing / 2; x < high.x / 2 + side / 2; x += spacing) {
       double low = 1e9, top = -1e9;
       for (int n = 0; n <= 16; ++n) {
-        const double z = ground_at(surface, x + (n % 4 - 1.5) / 3 * spacing, y + (n / 4 % 4 - 1.5) / 3 * spacing);
+        const double z =
+            ground_at(surface, x + (n % 4 - 1.5) / 3 * spacing, y + (n / 4 % 4 - 1.5) / 3 * spacing);
         low = std::min(low, z), top = std::max(top, z);
       }
       const double half = spacing / 2;

@@ -22,7 +22,7 @@ namespace sightbound {
 
 namespace {
 
-constexpr int kPlacesAcross = 8;            // an area, where no spacing is given
+constexpr int kPlacesAcross = 8;           // an area, where no spacing is given
 constexpr int kHalvings = 12;              // of the spacing, until a polygon has a place
 constexpr double kMostSquares = 1e8;       // looked at within a polygon's box
 constexpr double kMeanRadius = 6371008.8;  // of the Earth, as where there is no CRS (earth/georeference.h)
@@ -96,7 +96,8 @@ struct PlanCell {
   Box3 box;
 
   static PlanCell square(double i, double j, double side) {
-    return {{(i + 0.5) * side, (j + 0.5) * side}, {{i * side, j * side, 0}, {(i + 1) * side, (j + 1) * side, 0}}};
+    return {{(i + 0.5) * side, (j + 0.5) * side},
+            {{i * side, j * side, 0}, {(i + 1) * side, (j + 1) * side, 0}}};
   }
   void take_in(const Box3& other) {
     box.low = {std::min(box.low.x, other.low.x), std::min(box.low.y, other.low.y), 0};
@@ -105,7 +106,8 @@ struct PlanCell {
   double distance(const Xy& other) const { return std::hypot(place.x - other.x, place.y - other.y); }
 };
 
-// The squares of a fixed lattice whose middles lie in the polygons; nothing when there are too many to look at.
+// The squares of a fixed lattice whose middles lie in the polygons; nothing when there are too many to look
+// at.
 std::optional<std::vector<PlanCell>> squares_within(const Rings& rings, double side) {
   const Box3 box = box_of(rings);
   const double first_i = std::floor(box.low.x / side), last_i = std::floor(box.high.x / side);
@@ -129,8 +131,8 @@ struct Squares {
   static constexpr double kTouch = 1e-9;
 };
 
-// Squares that an edge enters and whose middle is outside hold the rest of the polygon: the nearest cell takes
-// each of them in.
+// Squares that an edge enters and whose middle is outside hold the rest of the polygon: the nearest cell
+// takes each of them in.
 void take_in_rims(const Rings& rings, double side, std::vector<PlanCell>& cells) {
   std::set<std::pair<double, double>> rims;
   for (const std::vector<Xyz>& ring : rings) {
@@ -151,8 +153,9 @@ void take_in_rims(const Rings& rings, double side, std::vector<PlanCell>& cells)
   for (const auto& [i, j] : rims) {
     const PlanCell rim = PlanCell::square(i, j, side);
     if (inside(rings, rim.place.x, rim.place.y)) continue;
-    std::ranges::min_element(cells, {}, [&](const PlanCell& cell) { return cell.distance(rim.place); })
-        ->take_in(rim.box);
+    std::ranges::min_element(cells, {}, [&](const PlanCell& cell) {
+      return cell.distance(rim.place);
+    })->take_in(rim.box);
   }
 }
 
@@ -202,7 +205,8 @@ std::size_t add_places(const Surface& surface, const std::vector<PlanCell>& cell
       continue;
     }
     const bool above = reference == HeightReference::kGround, wide = !(cell.box.low == cell.box.high);
-    const TerrainSpan within = wide ? terrain_within(surface, cell.box, numbers) : TerrainSpan{ground, ground};
+    const TerrainSpan within =
+        wide ? terrain_within(surface, cell.box, numbers) : TerrainSpan{ground, ground};
     const double base = above ? ground : 0;
     // The middle of a square may lie on the seam of two faces.
     const double low = above ? std::min(within.ground, ground) : 0,
@@ -249,9 +253,8 @@ ViewPlaces view_places(const Surface& surface, const std::vector<ViewVolume>& vi
     const Box3 box = box_of(rings);
     const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
     const double spacing = spacing_m > 0 ? spacing_m : std::max(side / kPlacesAcross, least_m);
-    const std::vector<PlanCell> cells = is_place(view)
-                                            ? std::vector<PlanCell>{{{box.low.x, box.low.y}, box}}
-                                            : plan_cells(rings, spacing, name);
+    const std::vector<PlanCell> cells = is_place(view) ? std::vector<PlanCell>{{{box.low.x, box.low.y}, box}}
+                                                       : plan_cells(rings, spacing, name);
     const std::size_t before = out.places.size();
     const std::size_t off = add_places(surface, cells, heights_of(view, spacing), reference, out.places);
     if (out.places.size() == before) {

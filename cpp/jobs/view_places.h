@@ -32,8 +32,9 @@ struct ViewPlaces {
 // again, until one lies inside, holes left out). A place's cell is all that it stands for: its square, with
 // what of the polygon lies in squares beside it, as high as the ground there takes the height range. Above
 // ground counts from the highest of the terrain there: who is set on a bridge stands on it. `spacing_m` 0: an
-// eighth of each polygon's longer side, at least `least_m`. Throws InvalidInput naming view, field, value: no rings, a point off the terrain, a
-// height that is not finite, from above to; a polygon with no place on the terrain.
+// eighth of each polygon's longer side, at least `least_m`. Throws InvalidInput naming view, field, value: no
+// rings, a point off the terrain, a height that is not finite, from above to; a polygon with no place on the
+// terrain.
 ViewPlaces view_places(const Surface&, const std::vector<ViewVolume>&, HeightReference, double spacing_m,
                        double least_m = 0);
 

@@ -17,7 +17,7 @@ namespace sightbound {
 
 namespace {
 
-constexpr int kTile = 16;           // columns; targets are timed by the square
+constexpr int kTile = 16;              // columns; targets are timed by the square
 constexpr double kTimedSeconds = 1.5;  // for an estimate
 
 // One job: views placed, targets laid out, memory asked for.
@@ -41,8 +41,8 @@ void require_lines(const SightEstimate& estimate, double spacing_m, double most)
 Prepared prepare(const ErrorVolume& volume, const std::vector<ViewVolume>& views,
                  const VolumeSightOptions& options, std::shared_ptr<const TargetLattice> targets) {
   Prepared job;
-  job.views =
-      view_places(volume.surface(), views, options.height_reference, options.view_spacing, targets->spacing_m);
+  job.views = view_places(volume.surface(), views, options.height_reference, options.view_spacing,
+                          targets->spacing_m);
   job.targets = std::move(targets);
   job.estimate.view_places = job.views.places.size();
   job.estimate.targets = job.targets->targets();

@@ -19,13 +19,14 @@ struct VolumeSightOptions {
   bool curvature = true;
   SeenFrom seen_from = SeenFrom::kAny;  // any or all of the view places, all views together
   HeightReference height_reference = HeightReference::kGround;
-  double max_distance = kUnlimited;  // metres in plan; targets beyond have no verdict
+  double max_distance = kUnlimited;       // metres in plan; targets beyond have no verdict
   HoldsFor holds_for = HoldsFor::kVoxel;  // what of a target its verdict speaks of
-  double view_spacing = 0;  // metres between places in a patrol area; 0 = an eighth of it, at least the targets'
-  LatticeOptions targets;            // not used by subtract_observer()
-  double most_lines = 1e9;           // refused above
-  int threads = 0;                   // 0 = all cores
-  std::size_t memory_budget = 0;     // bytes; 0 = three quarters of the machine's memory
+  double view_spacing =
+      0;  // metres between places in a patrol area; 0 = an eighth of it, at least the targets'
+  LatticeOptions targets;         // not used by subtract_observer()
+  double most_lines = 1e9;        // refused above
+  int threads = 0;                // 0 = all cores
+  std::size_t memory_budget = 0;  // bytes; 0 = three quarters of the machine's memory
 };
 
 struct SightEstimate {

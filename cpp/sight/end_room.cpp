@@ -51,8 +51,8 @@ double most_between(const SurfaceFace& face, const GrowthProfile& profile) {
   for (std::size_t n = 0; n < 3; ++n) {
     const Xyz side = face.corner[(n + 1) % 3] - face.corner[n];
     const auto& m = face.to_ground;
-    longest = std::max({longest, norm(side),
-                        std::hypot(m[0] * side.x + m[1] * side.y, m[2] * side.x + m[3] * side.y)});
+    longest = std::max(
+        {longest, norm(side), std::hypot(m[0] * side.x + m[1] * side.y, m[2] * side.x + m[3] * side.y)});
   }
   return amplitude * profile(longest / std::numbers::sqrt3, amplitude);
 }
@@ -85,8 +85,8 @@ EndRoom::EndRoom(const ErrorVolume& volume, const Xyz& middle, const Xyz& room)
     : volume_(&volume), surface_(&volume.surface()), middle_(middle), room_(room) {
   const bool vertical = surface_->metric() == Metric::kVertical;
   constexpr double kAnyHeight = 1e6;
-  const double reach =
-      (kEndZoneCells * kMostUneven + kMostMoved) * surface_->spacing_m() + (vertical ? plan_norm(room) : norm(room));
+  const double reach = (kEndZoneCells * kMostUneven + kMostMoved) * surface_->spacing_m() +
+                       (vertical ? plan_norm(room) : norm(room));
   const double up = vertical ? kAnyHeight : reach;
   std::vector<std::uint32_t> near;
   surface_->faces_near({{middle.x - reach, middle.y - reach, middle.z - up},

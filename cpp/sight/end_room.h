@@ -15,8 +15,8 @@ namespace sightbound {
 // All lines between two boxes, told by the one between their middles.
 struct LineBundle {
   VolumeLine middle;
-  Xyz from_room, to_room;         // half sizes of the boxes
-  double drop_spread = 0;         // how far drops differ from the middle's
+  Xyz from_room, to_room;            // half sizes of the boxes
+  double drop_spread = 0;            // how far drops differ from the middle's
   double shortest = 0, longest = 0;  // as d is measured
 };
 
@@ -45,8 +45,8 @@ class EndRoom {
   const Surface* surface_ = nullptr;
   Xyz middle_, room_;
   std::vector<SurfaceFace> faces_;
-  double rise_x_ = 0, rise_y_ = 0;          // steepest slopes along x and y
-  double most_between_ = 0;                 // sigma_g, metres
+  double rise_x_ = 0, rise_y_ = 0;  // steepest slopes along x and y
+  double most_between_ = 0;         // sigma_g, metres
 };
 
 }  // namespace sightbound

@@ -162,7 +162,8 @@ std::vector<int> TargetTile::unbeaten(const Node& node, int i, int j, const std:
 }
 
 // All views of the node are proven to hide the target, or to see it no better than others do.
-bool TargetTile::is_beaten(const Node& node, TargetAnswer& answer, const Box3& target, const Xyz& centre) const {
+bool TargetTile::is_beaten(const Node& node, TargetAnswer& answer, const Box3& target,
+                           const Xyz& centre) const {
   if (answer == sure(kVisible)) return true;
   const Grain grain = node.last - node.first <= kFewPlaces ? Grain::kVoxels : Grain::kBlocks;
   double known = answer.verdict == kNoVerdict ? -ask_.most : normal_quantile(static_cast<double>(answer.p));
@@ -182,8 +183,8 @@ bool TargetTile::is_beaten(const Node& node, TargetAnswer& answer, const Box3& t
                    : ask_.sight.blocked(node.places, {centre, centre}, -most, grain);
 }
 
-// All lines from one place to a column. In height fields one line may tell for the rest: who is surely seen is
-// so in every layer above, who is surely hidden in every layer beneath.
+// All lines from one place to a column. In height fields one line may tell for the rest: who is surely seen
+// is so in every layer above, who is surely hidden in every layer beneath.
 void TargetTile::see_from(std::size_t place, int i, int j, const std::vector<int>& layers, EndZone& target) {
   const Xyz &from = ask_.views.places()[place].place, &to = target.place();
   if (std::hypot(to.x - from.x, to.y - from.y) > ask_.options.max_distance_m) return;
@@ -197,7 +198,8 @@ void TargetTile::see_from(std::size_t place, int i, int j, const std::vector<int
   const int lowest = layers.front();
   if (is_sure(lowest, kVisible)) return give({i, j, 1}, kVisible, lowest);
   for (std::size_t n = layers.size() - 1; n > 0; --n) {
-    if (is_sure(layers[n], kHidden)) return give({i, j, 1}, kHidden, std::numeric_limits<int>::min(), layers[n]);
+    if (is_sure(layers[n], kHidden))
+      return give({i, j, 1}, kHidden, std::numeric_limits<int>::min(), layers[n]);
   }
 }
 
@@ -208,7 +210,8 @@ TargetAnswer TargetTile::judge(std::size_t place, int i, int j, int k, EndZone& 
   TargetAnswer answer{static_cast<float>(proven_probability({within(ratio.low), within(ratio.high)})),
                       verdict_of(ratio, ask_.quantile)};
   if (answer.verdict == kUncertain) return answer;
-  const TargetAnswer& known = answers_[slot(i, j)][static_cast<std::size_t>(k - ask_.targets.column(i, j).first)];
+  const TargetAnswer& known =
+      answers_[slot(i, j)][static_cast<std::size_t>(k - ask_.targets.column(i, j).first)];
   const bool matters = join(known, answer).verdict != join(known, {answer.p, kUncertain}).verdict;
   if (!matters || !holds_around(answer.verdict, place, box_of(i, j, k))) answer.verdict = kUncertain;
   return answer;
@@ -221,8 +224,7 @@ bool TargetTile::holds_around(std::uint8_t verdict, std::size_t place, const Box
   const EndRoom& views = one_place ? ask_.rooms[place] : ask_.cell(place);
   if (views.room() == Xyz{} && target.low == target.high) return true;
   if (verdict == kHidden && !ask_.solid) return corners_hide(views.box(), target);
-  const EndRoom around =
-      ask_.sight.room(0.5 * (target.low + target.high), 0.5 * (target.high - target.low));
+  const EndRoom around = ask_.sight.room(0.5 * (target.low + target.high), 0.5 * (target.high - target.low));
   if (verdict == kHidden) return ask_.sight.blocked(views, around, ask_.quantile);
   return ask_.sight.clear(views, target, ask_.quantile) || ask_.sight.clear(views, around, ask_.quantile);
 }

@@ -3,8 +3,8 @@
 //
 // A block of columns is asked against boxes of the view tree: a beam between two boxes that is proven hidden,
 // or seen, beyond K settles every line in it and is not split. What is left is split, block or box, whichever
-// is larger, down to single columns and single places, whose lines are judged one by one. So the answer is the
-// one that all the lines would give; only beyond K nothing finer is asked.
+// is larger, down to single columns and single places, whose lines are judged one by one. So the answer is
+// the one that all the lines would give; only beyond K nothing finer is asked.
 #pragma once
 
 #include <array>
@@ -24,11 +24,11 @@ struct TileQuestion {
   const VolumeSight& sight;
   const TargetLattice& targets;
   const VolumeViewshedOptions& options;
-  double quantile;   // z(c)
-  double most;       // K: beyond, nothing more is told
-  Xyz target_room;   // half sizes of the box that a target's verdict holds for
-  bool monotone;     // who sees a target sees all above it (height fields)
-  bool solid;        // no sheet
+  double quantile;  // z(c)
+  double most;      // K: beyond, nothing more is told
+  Xyz target_room;  // half sizes of the box that a target's verdict holds for
+  bool monotone;    // who sees a target sees all above it (height fields)
+  bool solid;       // no sheet
   const ViewTree& views;
   // Of the tree's places, in their order. `cells` is empty when all of them are points.
   std::vector<EndZone> zones;

@@ -35,11 +35,15 @@ std::size_t ViewTree::grow(std::size_t first, std::size_t last) {
   if (last - first == 1) return number;
 
   const Xyz size = node.box.high - node.box.low;
-  double Xyz::*const axis = size.x >= size.y && size.x >= size.z ? &Xyz::x : size.y >= size.z ? &Xyz::y : &Xyz::z;
+  double Xyz::*const axis = size.x >= size.y && size.x >= size.z ? &Xyz::x
+                            : size.y >= size.z                   ? &Xyz::y
+                                                                 : &Xyz::z;
   const std::size_t middle = first + (last - first) / 2;
   const auto at = [&](std::size_t n) { return places_.begin() + static_cast<std::ptrdiff_t>(n); };
   std::sort(at(first), at(last), [&](const ViewPlace& a, const ViewPlace& b) {
-    const auto key = [&](const ViewPlace& v) { return std::tuple(v.place.*axis, v.place.x, v.place.y, v.place.z); };
+    const auto key = [&](const ViewPlace& v) {
+      return std::tuple(v.place.*axis, v.place.x, v.place.y, v.place.z);
+    };
     return key(a) < key(b);
   });
   const std::size_t lower = grow(first, middle), upper = grow(middle, last);

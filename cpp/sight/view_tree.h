@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The places that a volume viewshed looks from, in a tree of boxes: what is proven of a box is proven of every
-// place in it.
+// The places that a volume viewshed looks from, in a tree of boxes: what is proven of a box is proven of
+// every place in it.
 #pragma once
 
 #include <algorithm>

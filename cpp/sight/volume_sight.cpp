@@ -150,8 +150,10 @@ LineBundle VolumeSight::bundle(const Box3& from, const Box3& to) const {
   const bool in_space = rays_.volume().surface().metric() == Metric::kNormal;
   const auto near = [](double d, double r) { return std::max(std::abs(d) - r, 0.0); };
   const auto far = [](double d, double r) { return std::abs(d) + r; };
-  bundle.shortest = std::hypot(near(apart.x, room.x), near(apart.y, room.y), in_space ? near(apart.z, room.z) : 0);
-  bundle.longest = std::hypot(far(apart.x, room.x), far(apart.y, room.y), in_space ? far(apart.z, room.z) : 0);
+  bundle.shortest =
+      std::hypot(near(apart.x, room.x), near(apart.y, room.y), in_space ? near(apart.z, room.z) : 0);
+  bundle.longest =
+      std::hypot(far(apart.x, room.x), far(apart.y, room.y), in_space ? far(apart.z, room.z) : 0);
   return bundle;
 }
 

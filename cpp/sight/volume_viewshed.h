@@ -3,8 +3,8 @@
 // viewshed.
 //
 // Coarse to fine (target_tile.h): beams between boxes of targets and of views first, then single lines, some
-// microseconds each. Memory: some 10 KiB a view place. Parallel over tiles of columns; the same answer for any
-// number of threads.
+// microseconds each. Memory: some 10 KiB a view place. Parallel over tiles of columns; the same answer for
+// any number of threads.
 #pragma once
 
 #include <cstdint>

@@ -3,10 +3,10 @@
 // cpp/volume.
 //
 // Notation: everything in voxels from the frame's origin; t = share of a line. The beam runs along x or y,
-// whichever its boxes lie farther apart in, and is cut across into slabs of 128, 8 or 1 voxels. What all lines
-// together may pass within a slab lies in a box, the section; a line that crosses the slab passes some voxels
-// of its section and no others. So voxels that are all clear let every line pass, and voxels that are all
-// solid stop every line that crosses the slab.
+// whichever its boxes lie farther apart in, and is cut across into slabs of 128, 8 or 1 voxels. What all
+// lines together may pass within a slab lies in a box, the section; a line that crosses the slab passes some
+// voxels of its section and no others. So voxels that are all clear let every line pass, and voxels that are
+// all solid stop every line that crosses the slab.
 #pragma once
 
 #include <algorithm>
@@ -126,9 +126,9 @@ class BeamWalk {
 
   bool runs() const { return path_.runs(); }
 
-  // Calls judge(section, whole, index) for the slabs of 8 between the shares, in order; `whole` is the section
-  // without regard to the shares. Slabs wholly above a height field are left out. False ends the walk; true
-  // when it came to the end.
+  // Calls judge(section, whole, index) for the slabs of 8 between the shares, in order; `whole` is the
+  // section without regard to the shares. Slabs wholly above a height field are left out. False ends the
+  // walk; true when it came to the end.
   template <class Judge>
   bool blocks(double begin, double end, const Judge& judge) {
     return slabs(kNode, path_.reach(begin, end), [&](int index) {

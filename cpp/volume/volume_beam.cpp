@@ -36,11 +36,11 @@ bool VolumeRays::clear(const VolumeBeam& beam, const LinePart& part, double rati
   });
 }
 
-// Is there a section that every line crosses, all of whose voxels stop lines? OfBlock, OfVoxel: whether they do;
-// `may`: whether a voxel of the block does.
+// Is there a section that every line crosses, all of whose voxels stop lines? OfBlock, OfVoxel: whether they
+// do; `may`: whether a voxel of the block does.
 template <class OfBlock, class OfVoxel, class May>
-bool VolumeRays::any_section(const VolumeBeam& beam, const LinePart& part, Grain grain, const OfBlock& of_block,
-                             const OfVoxel& of_voxel, const May& may) const {
+bool VolumeRays::any_section(const VolumeBeam& beam, const LinePart& part, Grain grain,
+                             const OfBlock& of_block, const OfVoxel& of_voxel, const May& may) const {
   BeamWalk walk = this->walk(beam);
   if (!walk.runs()) return false;
   return !walk.blocks(part.begin, part.end, [&](const Section& section, const Section& whole, int index) {

@@ -89,7 +89,7 @@ VolumeRays::VolumeRays(const ErrorVolume& volume)
 WalkedTrees VolumeRays::walked() const {
   const ErrorVolume::Trees& trees = volume_.trees();
   const bool columns = volume_.surface().metric() == Metric::kVertical;
-  return {trees.ratios,      trees.ambiguous,           columns ? &volume_.unknown_columns() : nullptr,
+  return {trees.ratios,      trees.ambiguous,          columns ? &volume_.unknown_columns() : nullptr,
           volume_.voxel_m(), volume_.voxel_height_m(), *columns_};
 }
 

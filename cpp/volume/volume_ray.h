@@ -80,7 +80,8 @@ class VolumeRays {
   WalkedTrees walked() const;
   BeamWalk walk(const VolumeBeam&) const;
   template <class OfBlock, class OfVoxel, class May>
-  bool any_section(const VolumeBeam&, const LinePart&, Grain, const OfBlock&, const OfVoxel&, const May&) const;
+  bool any_section(const VolumeBeam&, const LinePart&, Grain, const OfBlock&, const OfVoxel&,
+                   const May&) const;
 
   const ErrorVolume& volume_;
   std::unique_ptr<const BlockColumns> columns_;

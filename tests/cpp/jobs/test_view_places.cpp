@@ -118,10 +118,13 @@ TEST(ViewPlaces, CellsCoverTheArea) {
       double u = std::fmod(n * 0.7548776662, 1.0), v = std::fmod(n * 0.5698402910, 1.0);
       if (u + v > 1) u = 1 - u, v = 1 - v;
       const double x = 52 + u * 95 + v * 19, y = 57 + u * 4 + v * 86, z = x / 10 + 2 + n % 4;
-      EXPECT_TRUE(std::ranges::any_of(found.places, [&](const ViewPlace& view) {
-        const auto& [low, high] = view.cell;
-        return x >= low.x && x <= high.x && y >= low.y && y <= high.y && z >= low.z - 1e-4 && z <= high.z + 1e-4;
-      })) << spacing << ": " << x << ' ' << y << ' ' << z;
+      EXPECT_TRUE(std::ranges::any_of(found.places,
+                                      [&](const ViewPlace& view) {
+                                        const auto& [low, high] = view.cell;
+                                        return x >= low.x && x <= high.x && y >= low.y && y <= high.y &&
+                                               z >= low.z - 1e-4 && z <= high.z + 1e-4;
+                                      }))
+          << spacing << ": " << x << ' ' << y << ' ' << z;
     }
     for (const auto& [place, cell] : found.places) EXPECT_LE(cell.high.x - cell.low.x, 3 * spacing);
   }

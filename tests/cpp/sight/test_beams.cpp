@@ -117,7 +117,8 @@ TEST(Beams, are_clear_only_when_all_lines_are) {
           const Xy target = col_row(place);
           const double k = other.ratio(target.x, target.y, place.z);
           if (block) {
-            EXPECT_LT(k, ratio) << seed << " " << n;  // of which one is sure, the other is not of the opposite
+            EXPECT_LT(k, ratio) << seed << " "
+                                << n;  // of which one is sure, the other is not of the opposite
           } else {
             EXPECT_GE(k, ratio - 1e-4) << seed << " " << n;
           }

@@ -62,7 +62,8 @@ std::vector<ViewPlace> points(const Ground& ground, unsigned seed) {
   const Xyz high = ground.surface->bounds().high;
   std::vector<ViewPlace> views;
   for (int n = 0; n < 4; ++n)
-    views.push_back(ViewPlace::point(ground.over(unit(random) * high.x, unit(random) * high.y, 2 + 8 * unit(random))));
+    views.push_back(
+        ViewPlace::point(ground.over(unit(random) * high.x, unit(random) * high.y, 2 + 8 * unit(random))));
   // Two close together, so that boxes of the tree say something.
   views.push_back(ViewPlace::point(views.back().place + Xyz{3, 2, 0.5}));
   return views;
