@@ -60,6 +60,8 @@ class FaceDistances {
   // `furthest`.
   RatioBounds bounds(std::size_t face, const BoxOf& box, double furthest) const;
 
+  // Unit.
+  const Xyz& normal(std::size_t face) const { return faces_[face].normal; }
   // The largest sigma on the face.
   double largest_sigma(std::size_t face) const { return faces_[face].largest_sigma; }
   // Side of the terrain that a place lies on whose nearest place is on this face: +1, -1, or 0 on the terrain

@@ -122,11 +122,37 @@ class LeafRefiner {
     }
   }
 
+  // Between two sheets the near one changes, and with it the side, where no face is. A side that changes
+  // within a voxel is one face's, or that of faces which hang together and look one way.
+  bool may_change_sides(const RatioBounds& k, const std::vector<std::uint32_t>& faces) {
+    if (surface_.sides() == Sides::kSolid || !(k.low < 0 && k.high > 0) || faces.size() == 1) return false;
+    constexpr double kOneWay = 0.5;  // cosine; three faces of a cube's corner look one way
+    Xyz all;
+    for (const std::uint32_t face : faces) all = all + distances_.normal(face);
+    const double most = kOneWay * norm(all);
+    for (const std::uint32_t face : faces) {
+      if (!(dot(distances_.normal(face), all) > most)) return true;
+    }
+    // From the first face over common edges.
+    linked_.assign(1, faces.front());
+    for (std::size_t n = 0; n < linked_.size(); ++n) {
+      for (const std::int32_t next : surface_.topology().neighbours[linked_[n]]) {
+        const auto face = static_cast<std::uint32_t>(next);
+        if (next >= 0 && std::find(faces.begin(), faces.end(), face) != faces.end() &&
+            std::find(linked_.begin(), linked_.end(), face) == linked_.end()) {
+          linked_.push_back(face);
+        }
+      }
+    }
+    return linked_.size() < faces.size();
+  }
+
   void set(const std::array<int, 3>& voxel, const BoxOf& box, double furthest,
            const std::vector<std::uint32_t>& faces) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     RatioBounds k{kInfinity, -kInfinity, false};
     for (const std::uint32_t face : faces) k.enlarge(distances_.bounds(face, box, furthest));
+    k.ambiguous = k.ambiguous || may_change_sides(k, faces);
     if (k.ambiguous) {  // no side: as far on one as on the other
       const double most = std::max(-k.low, k.high);
       k.low = -most;
@@ -146,6 +172,7 @@ class LeafRefiner {
   BitLeaf* ambiguous_ = nullptr;
   std::array<std::vector<std::uint32_t>, 5> levels_;    // faces by depth: 8, 4, 2, 1 voxels
   std::vector<std::pair<std::uint32_t, double>> near_;  // face, least distance
+  std::vector<std::uint32_t> linked_;
 };
 
 }  // namespace

@@ -30,6 +30,7 @@ inline constexpr double kNeverCrossed = std::numeric_limits<double>::infinity();
 struct Piece {
   double from = 0, to = 0;  // t
   double low = 0, high = 0;
+  bool falls = false;
 };
 
 // The line in voxels.
@@ -55,7 +56,7 @@ struct Path {
   double height(double t) const { return z + t * dz - drop * t * (1 - t); }
   Piece piece(double from, double to) const {
     const double a = height(from), b = height(to);
-    Piece piece{from, to, std::min(a, b), std::max(a, b)};
+    Piece piece{from, to, std::min(a, b), std::max(a, b), a > b};
     if (from < turn && turn < to) piece.low = std::min(piece.low, height(turn));
     return piece;
   }
@@ -118,7 +119,7 @@ struct WalkedTrees {
   const BlockColumns& columns;
 };
 
-// One walk; `Passed` hears of every voxel or tile passed, in the order of the columns:
+// One walk; `Passed` hears of every voxel or tile passed, in the order of the line:
 //   bool voxel(std::int32_t packed, bool ambiguous, double t)   false ends the walk
 //   bool unknown(double t)                                      the column has no terrain to speak of
 //   bool may_matter(std::int32_t packed) const                  could bounds not below these change anything?
@@ -237,8 +238,9 @@ class RayWalk {
       }
       if (some_unknown && unknown_->at(columns.i(), columns.j()) && !passed.unknown(t)) return false;
       const Piece part = path_.piece(t, end);
-      const int k_end = layer(part.high);
-      for (int k = layer(part.low); k <= k_end; ++k) {
+      const int k_low = layer(part.low), k_high = layer(part.high);
+      for (int n = k_low; n <= k_high; ++n) {
+        const int k = part.falls ? k_low + k_high - n : n;
         const openvdb::Coord place(columns.i(), columns.j(), k);
         const bool two_sided = has_ambiguous_ && ambiguous_.isValueOn(place);
         if (!passed.voxel(value(i, j, k, place), two_sided, t)) return false;

@@ -149,6 +149,34 @@ TEST(RayWalk, walks_the_part_asked_for) {
   EXPECT_EQ(std::get<0>(*recorder.seen.rbegin()), 30 / 64.0f);
 }
 
+// The sides of a sheet are told by the order in which its voxels are passed.
+TEST(RayWalk, passes_the_voxels_of_a_steep_line_in_its_order) {
+  struct Layers {
+    std::vector<float> seen;
+    bool voxel(std::int32_t packed, bool, double) {
+      if (unpack(packed).low < kBeyond) seen.push_back(unpack(packed).low);
+      return true;
+    }
+    bool unknown(double) { return true; }
+    bool may_matter(std::int32_t) const { return true; }
+  };
+  RatioTree tree(pack(kBeyond, kBeyond));
+  for (int i = 0; i < 16; ++i) {
+    for (int k = 0; k < 24; ++k) tree.setValue({i, 2, k}, pack(k / 64.0, k / 64.0));
+  }
+  const BitTree none(false);
+  const Workers workers(1);
+  const BlockColumns columns(tree, workers);
+  const Xyz low{1.2, 2.5, 0.5}, high{6.9, 2.5, 23.5};
+  for (const bool down : {false, true}) {
+    Layers layers;
+    RayWalk({tree, none, nullptr, 1, 1, columns}, {down ? high : low, down ? low : high, 0}).run(0, 1, layers);
+    if (down) std::reverse(layers.seen.begin(), layers.seen.end());
+    EXPECT_TRUE(std::is_sorted(layers.seen.begin(), layers.seen.end())) << down;
+    EXPECT_GE(layers.seen.size(), 24u);
+  }
+}
+
 TEST(RayWalk, tells_of_columns_without_terrain) {
   struct Counter {
     int unknown_columns = 0;
