@@ -8,7 +8,6 @@
 
 #include "sight/face_under.h"
 #include "sight/line_ends.h"
-#include "volume/triangle.h"
 
 namespace sightbound {
 
@@ -18,16 +17,6 @@ RatioInterval lesser(const RatioInterval& a, const RatioInterval& b) {
   return {std::min(a.low, b.low), std::min(a.high, b.high)};
 }
 
-// Does the segment meet the triangle?
-bool meets(const Xyz& from, const Xyz& to, const std::array<Xyz, 3>& corner) {
-  const Xyz along = to - from, e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
-  const Xyz p = cross(along, e2);
-  const double area = dot(e1, p);
-  if (area == 0) return false;  // parallel: it meets a neighbour, or nothing
-  const Xyz s = from - corner[0], q = cross(s, e1);
-  const double u = dot(s, p) / area, v = dot(along, q) / area, t = dot(e2, q) / area;
-  return u >= -kAtCorner && v >= -kAtCorner && u + v <= 1 + kAtCorner && t >= 0 && t <= 1;
-}
 
 }  // namespace
 
@@ -45,8 +34,11 @@ void EndZone::find_faces() {
   const Surface& surface = *surface_;
   const Xyz& place = place_;
   const double reach = kEndZoneCells * surface.spacing_m();
-  constexpr double kAnyHeight = 1e6;
-  const double up = surface.metric() == Metric::kVertical ? kAnyHeight : reach;
+  if (surface.metric() == Metric::kNormal) {
+    in_space_.emplace(dynamic_cast<const TinSurface&>(surface), place, reach);
+    return;
+  }
+  constexpr double up = 1e6;  // any height
   faces_.clear();
   std::vector<std::uint32_t> near;
   surface.faces_near(
@@ -92,27 +84,12 @@ RatioInterval EndZone::least_in_plan(const VolumeLine& line, double t0, double t
   return {static_cast<float>(k), static_cast<float>(k)};
 }
 
-// A line that meets no face keeps its clearance; one that does is through the surface, how far is left open.
 RatioInterval EndZone::least_in_space(const VolumeLine& line, double t0, double t1, bool from_start,
                                       float beyond) const {
-  const Xyz from = line.at(t0), to = line.at(t1);
-  const double length = length_in(line, Metric::kNormal);
-  double least = static_cast<double>(beyond);
-  for (const SurfaceFace& face : faces_) {
-    if (meets(from, to, face.corner)) return {-beyond, 0};
-    if (!surface_->has_between()) continue;
-    for (const double share : kEndPlaces) {
-      const double s = share * surface_->spacing_m() / length, t = from_start ? s : 1 - s;
-      if (t <= t0 || t >= t1) continue;
-      const Xyz at = line.at(t), near = closest_on(face.corner, at);
-      const double amplitude = *std::max_element(face.amplitude.begin(), face.amplitude.end());
-      const double sigma = std::max(
-          amplitude * surface_->profile()(face.nearest_corner_in_space(near), amplitude), kLeastSigma);
-      const Xyz apart = at - near;
-      least = std::min(least, std::sqrt(dot(apart, apart)) / sigma);
-    }
-  }
-  return {static_cast<float>(least), beyond};
+  const double cell = surface_->spacing_m() / length_in(line, Metric::kNormal);
+  std::vector<double> judged;
+  for (const double share : kEndPlaces) judged.push_back(from_start ? share * cell : 1 - share * cell);
+  return in_space_->least(line, t0, t1, judged, beyond);
 }
 
 VolumeSight::VolumeSight(const VolumeRays& rays, const GroundBend& bend) : rays_(rays), bend_(bend) {}

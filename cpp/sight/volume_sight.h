@@ -8,9 +8,11 @@
 // crossings.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "error_model/verdict.h"
+#include "sight/end_faces.h"
 #include "sight/end_room.h"
 #include "volume/volume_ray.h"
 
@@ -44,7 +46,8 @@ class EndZone {
 
   const Surface* surface_;
   Xyz place_;
-  std::vector<SurfaceFace> faces_;
+  std::vector<SurfaceFace> faces_;    // vertical metric
+  std::optional<EndFaces> in_space_;  // along the normal
 };
 
 class VolumeSight {

@@ -17,10 +17,10 @@ using testing::together;
 
 constexpr double kSigma = 0.1;
 
-// 40 by 20 m, `middle` high at x = 20 and `ends` at x = 0 and 40; faces of 2 m look up.
+// 40 by 12 m, `middle` high at x = 20 and `ends` at x = 0 and 40; faces of 2 m look up.
 Tin sheet(double middle, double ends) {
   Tin tin;
-  constexpr int kCols = 20, kRows = 10;
+  constexpr int kCols = 20, kRows = 6;
   for (int r = 0; r <= kRows; ++r) {
     for (int c = 0; c <= kCols; ++c)
       tin.vertices.push_back({2.0 * c, 2.0 * r, middle + (ends - middle) * std::abs(c - 10) / 10});
@@ -60,7 +60,7 @@ struct Scene {
 TEST(Sides, change_between_two_sheets_without_hiding) {
   for (const double voxel : {0.05, 0.1}) {
     const Scene scene(together(sheet(10, 10), sheet(10.6, 10.6)), voxel);
-    for (const double y : {3.3, 10.1, 16.4}) {
+    for (const double y : {3.3, 8.4}) {
       EXPECT_NE(scene.verdict({2.2, y, 10.2}, {37.8, y, 10.4}), kHidden) << voxel;
       EXPECT_NE(scene.verdict({37.8, y, 10.22}, {2.2, y, 10.37}), kHidden) << voxel;
     }
@@ -77,8 +77,8 @@ TEST(Sides, change_in_a_narrow_passage_without_hiding) {
 
 TEST(Sides, tell_a_line_through_both_sheets) {
   const Scene scene(together(sheet(10, 10), sheet(10.9, 10.9)), 0.05);
-  EXPECT_EQ(scene.verdict({5.1, 5.2, 5}, {25.3, 12.2, 16}), kHidden);
-  EXPECT_EQ(scene.verdict({25.3, 12.2, 16}, {5.1, 5.2, 5}), kHidden);
+  EXPECT_EQ(scene.verdict({5.1, 5.2, 5}, {25.3, 9.2, 16}), kHidden);
+  EXPECT_EQ(scene.verdict({25.3, 9.2, 16}, {5.1, 5.2, 5}), kHidden);
 }
 
 // A steep line past the rim of a deck: the voxels of one column come in the order of the line, so that the
