@@ -72,7 +72,8 @@ def test_claims_hold_for_the_triangles(name):
                     why = (scene.oracle.refutes_hidden(eye, places[i], z, STEP, scene.solid) if verdict == 0 else
                            scene.oracle.refutes_visible(eye, places[i], z, SAMPLES))
                     if why:
-                        wrong.append(f"seed {seed}, c {confidence}, {eye} to {places[i]}: called {('hidden', '', 'visible')[verdict]}, but {why}")
+                        called = ("hidden", "", "visible")[verdict]
+                        wrong.append(f"seed {seed}, c {confidence}, {eye} to {places[i]}: called {called}, but {why}")
     shares = counts / counts.sum()
     print(f"{name}: hidden {shares[0]:.3f}, uncertain {shares[1]:.3f}, visible {shares[2]:.3f} of {counts.sum()}")
     assert not wrong, f"{len(wrong)} claims are refuted:\n" + "\n".join(wrong[:10])

@@ -67,8 +67,9 @@ class TinOracle:
     # ---- distances
 
     def nearest(self, places, most=np.inf):
-        """(distance, sigma_s, sigma_g, whether it is a border) of the nearest place of any face, for each place; (inf, 0, 0, False) when it is
-        further than `most`."""
+        """(distance, sigma_s, sigma_g, whether it is a border) of the nearest place of any face, for each place.
+
+        (inf, 0, 0, False) when it is further than `most`."""
         places = np.atleast_2d(places)
         faces = self._within(places, most)
         if faces.size == 0:

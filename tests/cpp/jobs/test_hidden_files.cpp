@@ -84,7 +84,8 @@ TEST_F(HiddenFilesTest, SayWhatTheyHold) {
   ASSERT_EQ(height->GetGeoTransform(at.data()), CE_None);
   EXPECT_EQ(at, (std::array<double, 6>{1000, 5, 0, 2010, 0, -5}));
   float thickness = 0;
-  ASSERT_EQ(core->GetRasterBand(1)->RasterIO(GF_Read, 2, 1, 1, 1, &thickness, 1, 1, GDT_Float32, 0, 0), CE_None);
+  ASSERT_EQ(core->GetRasterBand(1)->RasterIO(GF_Read, 2, 1, 1, 1, &thickness, 1, 1, GDT_Float32, 0, 0),
+            CE_None);
   EXPECT_EQ(thickness, 4);  // two of the four targets
 }
 

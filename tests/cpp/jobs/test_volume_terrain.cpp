@@ -70,7 +70,8 @@ TEST(VolumeTerrain, LearnsADemsErrorFromItself) {
 }
 
 TEST(VolumeTerrain, RefusesWhatItCannotMeasureOrHold) {
-  EXPECT_TRUE(says(complaint<InvalidInput>([] { Waves(crs_from_text("EPSG:4326"), 0.01).terrain(exact()); }), "reproject"));
+  EXPECT_TRUE(says(complaint<InvalidInput>([] { Waves(crs_from_text("EPSG:4326"), 0.01).terrain(exact()); }),
+                   "reproject"));
   VolumeTerrainOptions tight;
   tight.memory_budget = 100;
   EXPECT_TRUE(says(complaint<OverBudget>([&] { Waves().terrain(exact(), tight); }), "8 samples"));
@@ -90,10 +91,12 @@ TEST(VolumeTerrain, OfATinMeasuresAsItsShapeAsks) {
 TEST(VolumeTerrain, NothingIsLearntFromATin) {
   ErrorModel model = exact();
   model.geologic_variation = ErrorModel{}.geologic_variation;
-  EXPECT_TRUE(says(complaint<InvalidInput>([&] { volume_terrain(testing::triangle(), model); }), "geologic_variation"));
+  EXPECT_TRUE(says(complaint<InvalidInput>([&] { volume_terrain(testing::triangle(), model); }),
+                   "geologic_variation"));
   model = exact();
   model.vertical_rmse = ErrorModel{}.vertical_rmse;
-  EXPECT_TRUE(says(complaint<InvalidInput>([&] { volume_terrain(testing::triangle(), model); }), "cannot be learnt"));
+  EXPECT_TRUE(
+      says(complaint<InvalidInput>([&] { volume_terrain(testing::triangle(), model); }), "cannot be learnt"));
   Tin known = testing::triangle();
   known.sigma_v = {0.1f, 0.2f, 0.3f};
   EXPECT_EQ(volume_terrain(known, model).surface->face(0)->sampling[1], static_cast<double>(0.2f));

@@ -62,7 +62,7 @@ TEST_F(VolumeViewshedJob, IsToldBeforeItRuns) {
   views_ = {{{{1010, 2010}, {1050, 2010}, {1050, 2050}, {1010, 2050}}, 2, 6, ""}};
   options_.view_spacing = 10;
   const SightEstimate told = estimate();
-  EXPECT_EQ(told.view_places, 32u);        // 4 x 4 in plan, at both heights
+  EXPECT_EQ(told.view_places, 32u);  // 4 x 4 in plan, at both heights
   EXPECT_EQ(told.targets, 20u * 10u * 4u);
   EXPECT_EQ(told.lines, 32.0 * 800);
   EXPECT_GT(told.seconds, 0);

@@ -105,7 +105,8 @@ TEST(EndFaces, doubt_between_the_samples_needs_a_thicker_wall) {
 
 // The nearest face may lie outside the end zone.
 TEST(EndFaces, great_doubt_reaches_into_the_zone) {
-  const Tin far = tin_of({{17, -90, -90}, {17, 90, -90}, {17, 90, 90}, {17, -90, 90}}, {{0, 1, 2}, {0, 2, 3}});
+  const Tin far =
+      tin_of({{17, -90, -90}, {17, 90, -90}, {17, 90, 90}, {17, -90, 90}}, {{0, 1, 2}, {0, 2, 3}});
   EXPECT_EQ(Scene(far, 1).verdict(kEye, {5, 0.3, 0.2}), kUncertain);
   EXPECT_EQ(Scene(far, 0.001).verdict(kEye, {5, 0.3, 0.2}), kVisible);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sheets have two sides, no inside: a line is hidden when it goes through one, not when the near side changes.
+// Sheets have two sides, no inside: a line is hidden when it goes through one, not when the near side
+// changes.
 #include <cmath>
 #include <memory>
 

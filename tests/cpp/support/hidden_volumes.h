@@ -84,7 +84,7 @@ inline Answers random_answers(const TargetLattice& lattice, unsigned seed) {
 }
 
 inline HiddenVolume volume_of(const std::shared_ptr<const TargetLattice>& lattice, const Answers& answers,
-                       int threads = 1) {
+                              int threads = 1) {
   HiddenVolumeBuilder builder(lattice);
   const Workers workers(threads);
   workers.for_each(lattice->columns.size(), [&](std::size_t n) {

@@ -170,7 +170,8 @@ TEST(RayWalk, passes_the_voxels_of_a_steep_line_in_its_order) {
   const Xyz low{1.2, 2.5, 0.5}, high{6.9, 2.5, 23.5};
   for (const bool down : {false, true}) {
     Layers layers;
-    RayWalk({tree, none, nullptr, 1, 1, columns}, {down ? high : low, down ? low : high, 0}).run(0, 1, layers);
+    RayWalk({tree, none, nullptr, 1, 1, columns}, {down ? high : low, down ? low : high, 0})
+        .run(0, 1, layers);
     if (down) std::reverse(layers.seen.begin(), layers.seen.end());
     EXPECT_TRUE(std::is_sorted(layers.seen.begin(), layers.seen.end())) << down;
     EXPECT_GE(layers.seen.size(), 24u);
