@@ -223,13 +223,16 @@ bool TargetTile::holds_around(std::uint8_t verdict, std::size_t place, const Box
   const bool one_place = (verdict == kVisible) == is_any();
   const EndRoom& views = one_place ? ask_.rooms[place] : ask_.cell(place);
   if (views.room() == Xyz{} && target.low == target.high) return true;
-  if (verdict == kHidden && !ask_.solid) return corners_hide(views.box(), target);
   const EndRoom around = ask_.sight.room(0.5 * (target.low + target.high), 0.5 * (target.high - target.low));
-  if (verdict == kHidden) return ask_.sight.blocked(views, around, ask_.quantile);
+  if (verdict == kHidden) {
+    return ask_.sight.blocked(views, around, ask_.quantile) ||
+           (!ask_.monotone && corners_hide(views.box(), target));
+  }
   return ask_.sight.clear(views, target, ask_.quantile) || ask_.sight.clear(views, around, ask_.quantile);
 }
 
-// Sheets are too thin for beams: there the corners of the two boxes are tried, all with all.
+// Walls are too thin for beams: where the terrain is no height field the corners of the two boxes are tried,
+// all with all.
 bool TargetTile::corners_hide(const Box3& views, const Box3& target) const {
   for (const Xyz& from : corners_of(views)) {
     const EndZone view = ask_.sight.zone(from);

@@ -17,7 +17,6 @@ RatioInterval lesser(const RatioInterval& a, const RatioInterval& b) {
   return {std::min(a.low, b.low), std::min(a.high, b.high)};
 }
 
-
 }  // namespace
 
 EndZone::EndZone(const Surface& surface, const Xyz& place) : surface_(&surface), place_(place) {
