@@ -28,7 +28,8 @@ std::optional<double> meets(const Xyz& from, const Xyz& along, const std::array<
   if (area == 0) return std::nullopt;  // parallel: it meets a neighbour, or nothing
   const Xyz s = from - corner[0], q = cross(s, e1);
   const double u = dot(s, p) / area, v = dot(along, q) / area, t = dot(e2, q) / area;
-  if (!(u >= -kAtCorner && v >= -kAtCorner && u + v <= 1 + kAtCorner && t >= 0 && t <= 1)) return std::nullopt;
+  if (!(u >= -kAtCorner && v >= -kAtCorner && u + v <= 1 + kAtCorner && t >= 0 && t <= 1))
+    return std::nullopt;
   return t;
 }
 
@@ -147,7 +148,8 @@ double EndFaces::through_by(const Part& part, const std::vector<Crossing>& met) 
     if (met[n].turn == 0) continue;
     const double border = border_distance(part.at(met[n].t)) / (2 * length(part.along));
     double before = 0, after = 0;
-    double back = met[n].t - (n > 0 ? met[n - 1].t : 0), on = (n + 1 < met.size() ? met[n + 1].t : 1) - met[n].t;
+    double back = met[n].t - (n > 0 ? met[n - 1].t : 0),
+           on = (n + 1 < met.size() ? met[n + 1].t : 1) - met[n].t;
     for (int half = 0; half < kHalvings; ++half, back /= 2, on /= 2) {
       if (back < border) before = std::max(before, ratio(part.at(met[n].t - back)));
       if (on < border) after = std::max(after, ratio(part.at(met[n].t + on)));
@@ -157,8 +159,8 @@ double EndFaces::through_by(const Part& part, const std::vector<Crossing>& met) 
   return most;
 }
 
-RatioInterval EndFaces::least(const VolumeLine& line, double t0, double t1,
-                              const std::vector<double>& judged, float beyond) const {
+RatioInterval EndFaces::least(const VolumeLine& line, double t0, double t1, const std::vector<double>& judged,
+                              float beyond) const {
   const Part part{line.at(t0), line.at(t1) - line.at(t0)};
   const std::vector<Crossing> met = crossings(part, faces_);
   const bool solid = surface_->sides() == Sides::kSolid;

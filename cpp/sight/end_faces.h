@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The faces around an end of a line, any TIN (distance along the normal): what they prove of the line there.
 //
-// sigma_g alone counts (at least 1 mm). Visible: the line meets no face, and stays clear of them by sigma_g at
-// 1/16, 1/8, 1/4, 1/2 and 3/4 L from the end. Hidden: solids: it is inside, that far from all faces; sheets: it
-// goes through, from that far on one side to that far on the other, away from borders. All else is left open.
-// Cost: some tens of crossings; where it meets faces, some tens of nearest places.
+// sigma_g alone counts (at least 1 mm). Visible: the line meets no face, and stays clear of them by sigma_g
+// at 1/16, 1/8, 1/4, 1/2 and 3/4 L from the end. Hidden: solids: it is inside, that far from all faces;
+// sheets: it goes through, from that far on one side to that far on the other, away from borders. All else is
+// left open. Cost: some tens of crossings; where it meets faces, some tens of nearest places.
 #pragma once
 
 #include <cstdint>

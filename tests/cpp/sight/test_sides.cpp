@@ -68,6 +68,13 @@ TEST(Sides, change_between_two_sheets_without_hiding) {
   }
 }
 
+// The same 1 m apart: halfway no side is known at all.
+TEST(Sides, change_far_between_two_sheets_without_hiding) {
+  const Scene scene(together(sheet(10, 10), sheet(11, 11)), 0.05);
+  EXPECT_NE(scene.verdict({2.2, 5.3, 10.2}, {37.8, 5.3, 10.8}), kHidden);
+  EXPECT_NE(scene.verdict({37.8, 5.3, 10.2}, {2.2, 5.3, 10.8}), kHidden);
+}
+
 // An hourglass: in its middle the sheets are nearer to one another than a voxel is wide.
 TEST(Sides, change_in_a_narrow_passage_without_hiding) {
   const Scene scene(together(sheet(10, 8), sheet(10.2, 12.2)), 0.3);
