@@ -18,6 +18,8 @@ namespace sightbound {
 
 namespace {
 
+constexpr double kThinnest = 0.01;  // metres; smaller voxels are no advice
+
 // A voxel side whose estimated need is within the budget: the smallest, to 5 %.
 double side_that_fits(const Surface& surface, VolumeOptions options, const VolumeNeed& need,
                       std::size_t budget) {
@@ -88,11 +90,15 @@ ErrorVolume ErrorVolume::build(std::shared_ptr<const Surface> surface, const Vol
   report.unknown_columns = volume.unknown_.count();
   report.ambiguous_voxels = trees->ambiguous.activeVoxelCount();
   if (held.not_held > 0) {
+    // Where samples are without error the volume has no thickness at them, and nothing fits.
+    const std::string advice =
+        held.finest_needed_m < kThinnest
+            ? " Samples without error leave it no thickness there; sight is judged all the same."
+            : " Voxels of " + number_text(held.finest_needed_m, 3) + " m would hold all.";
     report.warnings.push_back(std::to_string(held.not_held) + " of " + std::to_string(held.faces) +
                               " faces are too steep or too well known for voxels of " +
                               number_text(voxels.voxel_m, 3) +
-                              " m: there the volume is only known from outside. Voxels of " +
-                              number_text(held.finest_needed_m, 3) + " m would hold all.");
+                              " m: there the volume is only known from outside." + advice);
   }
   volume.surface_ = std::move(surface);
   volume.trees_ = std::move(trees);

@@ -113,6 +113,29 @@ def test_patrol_areas_have_places_inside(volume):
     assert sb.estimate_volume_viewshed(volume, [tiny], view_spacing=10)["view_places"] >= 1
 
 
+def test_claims_shrink_as_they_hold_for_more(volume, eye):
+    claims = []
+    for word in ("place", "voxel", "target"):
+        seen = sb.volume_viewshed(volume, [eye], view_height=3, target_ceiling=30, target_spacing=5, holds_for=word).volumes()
+        claims.append(seen["hidden_m3"] + seen["visible_m3"])
+    assert claims[0] > claims[1] > claims[2] > 0.3 * claims[0]
+
+
+def test_hidden_from_an_area_is_hidden_from_all_of_it(volume):
+    area, rng = [place(2, 4), place(10, 5), place(4, 13)], np.random.default_rng(1)
+    seen = sb.volume_viewshed(volume, [area], view_height=2, target_ceiling=30, target_spacing=5, view_spacing=40)
+    assert seen.volumes()["hidden_m3"] > 0
+    for _ in range(12):
+        share = np.sort(rng.random(2))
+        share = np.diff([0, *share, 1])  # even over the triangle
+        somewhere = tuple(float(v) for v in share @ np.array(area))
+        alone = sb.volume_viewshed(
+            volume, [somewhere], view_height=2, target_ceiling=30, target_spacing=5, holds_for="place"
+        )
+        # Nothing that the area never sees is less than hidden from a place in it.
+        assert (seen | alone).volumes()["hidden_m3"] == seen.volumes()["hidden_m3"]
+
+
 def test_nobody_looks_out_of_a_hole(volume):
     def square(col, row, cells):
         return [place(col, row), place(col + cells, row), place(col + cells, row + cells), place(col, row + cells)]
@@ -214,6 +237,7 @@ def test_bad_arguments_are_named(volume, eye):
         "at most the ceiling": {"target_height_spacing": 50},
         "confidence": {"confidence": 0.99999},
         "seen_from is 'some'": {"seen_from": "some"},
+        "'place', 'voxel' and 'target'": {"holds_for": "all"},
         "view_height has 3 values": {"view_height": [1, 2, 3]},
         "ends at 1": {"view_height": 3, "view_height_to": 1},
         "not on the terrain": {"views": [(0.0, 0.0)]},

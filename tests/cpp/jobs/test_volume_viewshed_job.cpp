@@ -54,12 +54,12 @@ class VolumeViewshedJob : public ::testing::Test {
   }
 
   ErrorVolume volume_ = plain();
-  std::vector<ViewVolume> views_{{{{1055, 2055}}, 1.7, 1.7, ""}};
+  std::vector<ViewVolume> views_{ViewVolume{{{{1055, 2055}}}, 1.7, 1.7, ""}};
   VolumeSightOptions options_;
 };
 
 TEST_F(VolumeViewshedJob, IsToldBeforeItRuns) {
-  views_ = {{{{1010, 2010}, {1050, 2010}, {1050, 2050}, {1010, 2050}}, 2, 6, ""}};
+  views_ = {ViewVolume{{{{1010, 2010}, {1050, 2010}, {1050, 2050}, {1010, 2050}}}, 2, 6, ""}};
   options_.view_spacing = 10;
   const SightEstimate told = estimate();
   EXPECT_EQ(told.view_places, 32u);  // 4 x 4 in plan, at both heights
@@ -73,9 +73,9 @@ TEST_F(VolumeViewshedJob, IsToldBeforeItRuns) {
   EXPECT_EQ(found.hidden.lattice().targets(), told.targets);
 }
 
-TEST_F(VolumeViewshedJob, ViewsAreAsFarApartAsTargetsUnlessSaid) {
-  views_ = {{{{1000, 2000}, {1200, 2000}, {1200, 2100}, {1000, 2100}}, 2, 2, ""}};
-  EXPECT_EQ(estimate().view_places, 200u);
+TEST_F(VolumeViewshedJob, AnAreaIsLookedFromEightPlacesAcrossUnlessSaid) {
+  views_ = {ViewVolume{{{{1000, 2000}, {1200, 2000}, {1200, 2100}, {1000, 2100}}}, 2, 2, ""}};
+  EXPECT_EQ(estimate().view_places, 32u);
   options_.view_spacing = 50;
   EXPECT_EQ(estimate().view_places, 8u);
 }
@@ -123,7 +123,7 @@ TEST_F(VolumeViewshedJob, AHiddenVolumeBelongsToItsErrorVolume) {
   Progress progress;
   const HiddenResult found = run();
   const ErrorVolume elsewhere = plain(1007);
-  views_[0].outline = {{1100, 2055}};
+  views_[0].rings = {{{1100, 2055}}};
   const auto subtract = [&](const ErrorVolume& volume, double height) {
     return subtract_observer(found.hidden, volume, views_, options_, height, progress);
   };
