@@ -111,8 +111,8 @@ void time_viewsheds(const VolumeRays& rays, const DemSurface& surface, double sp
   time_viewshed(sight, "one observer, targets as boxes", {ViewPlace::point(eye)}, lattice, options, workers);
   options.holds_for = HoldsFor::kVoxel;
   time_viewshed(sight, "one observer", {ViewPlace::point(eye)}, lattice, options, workers);
-  time_viewshed(sight, "a patrol square of 200 m", patrol_square(surface, 200, spacing), lattice, options,
-                workers);
+  time_viewshed(sight, "a patrol square of 200 m, cells of 25 m", patrol_square(surface, 200, 25), lattice,
+                options, workers);
 }
 
 int run(int count, char** words) {
