@@ -81,7 +81,10 @@ def run(folder):
     source = ogr.Open(sentries)
     places = [(f.GetGeometryRef().GetX(), f.GetGeometryRef().GetY()) for f in source.GetLayer(0)]
     volume = sb.ErrorVolume.build(sb.read_dem(dem))
-    hidden = sb.volume_viewshed(volume, places, view_height=EYE_HEIGHT, target_ceiling=CEILING, target_spacing=SPACING)
+    # Of voxels as large as these (8 m) little is surely seen whole near the ground.
+    hidden = sb.volume_viewshed(
+        volume, places, view_height=EYE_HEIGHT, target_ceiling=CEILING, target_spacing=SPACING, holds_for="place"
+    )
     hidden.write(height=folder / "height.tif", thickness=folder / "thickness.tif", core_thickness=folder / "core.tif",
                  top=folder / "top.ply", fog=folder / "fog.gpkg")
     return hidden

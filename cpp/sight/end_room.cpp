@@ -8,6 +8,7 @@
 
 #include "sight/face_under.h"
 #include "sight/line_ends.h"
+#include "volume/dem_surface.h"
 #include "volume/error_volume.h"
 #include "volume/triangle.h"
 
@@ -17,9 +18,14 @@ namespace {
 
 // Bundles whose lines differ more in length, or move more within the zone (cells), are left to smaller boxes.
 constexpr double kMostUneven = 1.25, kMostMoved = 0.25;
-constexpr int kSteps = 32;  // along an end zone in space
+constexpr int kSteps = 32;           // along an end zone in space
+constexpr double kStepsInCell = 16;  // along one in plan
 
 double plan_norm(const Xyz& a) { return std::hypot(a.x, a.y); }
+
+Xyz greater(const Xyz& a, const Xyz& b) {
+  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+}
 
 Xyz moved_at(const LineBundle& bundle, double t) {
   Xyz moved = (1 - t) * bundle.from_room + t * bundle.to_room;
@@ -99,9 +105,11 @@ EndRoom::EndRoom(const ErrorVolume& volume, const Xyz& middle, const Xyz& room)
     rise_x_ = std::max(rise_x_, slopes.x);
     rise_y_ = std::max(rise_y_, slopes.y);
     most_between_ = std::max(most_between_, most_between(*face, surface_->profile()));
+    amplitude_ = std::max(amplitude_, *std::max_element(face->amplitude.begin(), face->amplitude.end()));
     faces_.push_back(*face);
   }
   most_between_ = std::max(most_between_, kLeastSigma);
+  is_dem_ = dynamic_cast<const DemSurface*>(surface_) != nullptr;
 }
 
 bool EndRoom::tells(const LineBundle& bundle, bool from_start) const {
@@ -121,20 +129,36 @@ bool EndRoom::clear(const LineBundle& bundle, bool from_start, double ratio) con
 }
 
 bool EndRoom::clear_in_plan(const LineBundle& bundle, const LinePart& zone, double ratio) const {
-  // Between two crossings the curve of the line is below its chord by this much at most.
-  const double length = zone.end - zone.begin, sag = bundle.middle.drop * length * length / 4;
-  const double needed = ratio * most_between_ + sag;
+  const double length = zone.end - zone.begin, step = surface_->spacing_m() / kStepsInCell / bundle.longest;
+  // Between two places the curve of the line is below its chord by this much at most.
+  const double sag = bundle.middle.drop * step * step / 4;
   double covered = 0;
   for (const SurfaceFace& face : faces_) {
     const FaceUnder under(face, surface_->profile(), bundle.middle);
     const double a = std::max(under.from(), zone.begin), b = std::min(under.to(), zone.end);
     if (under.crossings() < 2 || !(a <= b)) continue;
     covered += b - a;
-    for (const double t : {a, b}) {
-      if (!(under.clearance(t) - rise(moved_at(bundle, t)) >= needed)) return false;
+    const int steps = static_cast<int>(std::ceil((b - a) / step)) + 1;
+    for (int n = 0; n < steps; ++n) {
+      const double t0 = a + (b - a) * n / steps, t1 = a + (b - a) * (n + 1) / steps;
+      const Xyz moved = greater(moved_at(bundle, t0), moved_at(bundle, t1));
+      const double least = std::min(under.clearance(t0), under.clearance(t1)) - sag - rise(moved);
+      const Xyz middle = bundle.middle.at((t0 + t1) / 2);
+      const double aside = (t1 - t0) / 2 * bundle.longest + plan_norm(moved);
+      if (!(least >= ratio * between_around(face, middle, aside))) return false;
     }
   }
   return covered >= length * (1 - kUncovered);
+}
+
+// sigma_g is not above this within `aside` of the place. The distance to the nearest sample of a DEM is
+// continuous over its faces, and changes no faster than the place.
+double EndRoom::between_around(const SurfaceFace& face, const Xyz& place, double aside) const {
+  if (!is_dem_) return most_between_;
+  const auto& m = face.to_ground;
+  const double stretch = std::hypot(std::hypot(m[0], m[1]), std::hypot(m[2], m[3]));
+  const double d = face.nearest_corner_in_plan(place.x, place.y) + stretch * aside;
+  return std::max(std::min(amplitude_ * surface_->profile()(d, amplitude_), most_between_), kLeastSigma);
 }
 
 bool EndRoom::clear_in_space(const LineBundle& bundle, const LinePart& zone, double ratio) const {

@@ -39,14 +39,16 @@ class EndRoom {
   bool tells(const LineBundle&, bool from_start) const;
   double rise(const Xyz& moved) const { return moved.z + rise_x_ * moved.x + rise_y_ * moved.y; }
   bool clear_in_plan(const LineBundle&, const LinePart&, double ratio) const;
+  double between_around(const SurfaceFace&, const Xyz& place, double aside) const;
   bool clear_in_space(const LineBundle&, const LinePart&, double ratio) const;
 
   const ErrorVolume* volume_ = nullptr;
   const Surface* surface_ = nullptr;
   Xyz middle_, room_;
   std::vector<SurfaceFace> faces_;
-  double rise_x_ = 0, rise_y_ = 0;  // steepest slopes along x and y
-  double most_between_ = 0;         // sigma_g, metres
+  double rise_x_ = 0, rise_y_ = 0;           // steepest slopes along x and y
+  double most_between_ = 0, amplitude_ = 0;  // sigma_g, Delta / z(0.95), metres
+  bool is_dem_ = false;
 };
 
 }  // namespace sightbound
