@@ -17,8 +17,9 @@ namespace sightbound {
 
 namespace {
 
-constexpr int kTile = 16;              // columns; targets are timed by the square
-constexpr double kTimedSeconds = 1.5;  // for an estimate
+constexpr int kTile = 16;                       // columns; targets are timed by the square
+constexpr double kTimedSeconds = 1.5;           // for an estimate
+constexpr std::size_t kBytesOfView = 32 << 10;  // the faces around a view place and its cell, about
 
 // One job: views placed, targets laid out, memory asked for.
 struct Prepared {
@@ -49,11 +50,13 @@ Prepared prepare(const ErrorVolume& volume, const std::vector<ViewVolume>& views
   job.estimate.lines =
       static_cast<double>(job.targets->targets()) * static_cast<double>(job.views.places.size());
   require_lines(job.estimate, job.targets->spacing_m, options.most_lines);
-  job.estimate.bytes = HiddenVolumeBuilder::bytes_needed(*job.targets);
+  job.estimate.bytes =
+      HiddenVolumeBuilder::bytes_needed(*job.targets) + job.estimate.view_places * kBytesOfView;
   MemoryBudget(options.memory_budget)
       .require(job.estimate.bytes,
-               "The hidden volume of " + std::to_string(job.estimate.targets) + " targets",
-               "Give a larger target_spacing or a lower target_ceiling.");
+               "The hidden volume of " + std::to_string(job.estimate.targets) + " targets from " +
+                   std::to_string(job.estimate.view_places) + " view places",
+               "Give a larger target_spacing or view_spacing, or a lower target_ceiling.");
   return job;
 }
 
