@@ -12,13 +12,11 @@
 namespace sightbound {
 namespace {
 
+using testing::kBent;
 using testing::Lines;
 using testing::RandomDem;
 using testing::rolling_dem;
 using testing::volume_of;
-
-constexpr double kMeanRadius = 6371008.8;
-constexpr GroundBend kBent{(1 - 0.13) / (2 * kMeanRadius), 0, (1 - 0.13) / (2 * kMeanRadius)};
 
 class Draw {
  public:

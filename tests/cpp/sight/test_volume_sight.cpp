@@ -15,14 +15,12 @@
 namespace sightbound {
 namespace {
 
+using testing::kBent;
+using testing::kPlane;
 using testing::Lines;
 using testing::RandomDem;
 using testing::rolling_dem;
 using testing::volume_of;
-
-constexpr double kMeanRadius = 6371008.8;
-constexpr GroundBend kPlane{};
-constexpr GroundBend kBent{(1 - 0.13) / (2 * kMeanRadius), 0, (1 - 0.13) / (2 * kMeanRadius)};
 
 // Guarantee V5: the engines differ only where one says uncertain. And the volume's bounds hold what the other
 // engine's judged places say, since they are among the places of the line.

@@ -9,10 +9,15 @@
 #include <random>
 
 #include "sight/sight_line.h"
+#include "sight/volume_sight.h"
 #include "support/random_dem.h"
 #include "volume/error_volume.h"
 
 namespace sightbound::testing {
+
+// The Earth as the definition has it where there is no CRS, refraction 0.13; and a plane.
+inline constexpr GroundBend kBent{(1 - 0.13) / (2 * 6371008.8), 0, (1 - 0.13) / (2 * 6371008.8)};
+inline constexpr GroundBend kPlane{};
 
 inline ErrorVolume volume_of(const std::shared_ptr<const Surface>& surface, double voxel, double height = 0) {
   Progress progress;
