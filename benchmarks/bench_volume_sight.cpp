@@ -133,6 +133,7 @@ int run(int count, char** words) {
   const VolumeRays rays(volume);
   std::printf("summary for lines: %.1f s\n", seconds_since(start));
   time_lines(rays, *surface, 2, 5);
+  time_lines(rays, *surface, 9, 9);
   time_lines(rays, *surface, 30, 30);
   time_lines(rays, *surface, 100, 60);
   time_viewsheds(rays, *surface, count > 4 ? std::atof(words[4]) : 10, count > 5 ? std::atoi(words[5]) : 0);

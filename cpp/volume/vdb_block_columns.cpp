@@ -60,8 +60,8 @@ void BlockColumns::find_layers(const std::vector<const RatioNode128*>& nodes, st
   openvdb::CoordBBox plan;
   for (const RatioNode128* node : nodes) plan.expand(node->origin());
   first_i8_ = plan.min().x() / kLeaf, first_j8_ = plan.min().y() / kLeaf;
-  cols_ = (plan.max().x() - plan.min().x()) / kLeaf + kAcross;
-  rows_ = (plan.max().y() - plan.min().y()) / kLeaf + kAcross;
+  cols_ = (plan.max().x() - plan.min().x()) / kLeaf + kAcross128;
+  rows_ = (plan.max().y() - plan.min().y()) / kLeaf + kAcross128;
   columns_.assign(static_cast<std::size_t>(cols_) * static_cast<std::size_t>(rows_), Column{});
 
   std::vector<const RatioNode128*> upwards = nodes;
@@ -102,19 +102,26 @@ void BlockColumns::mind_large_tiles(const RatioTree& tree) {
 
 void BlockColumns::lay_out(std::int32_t background) {
   std::size_t layers = 0;
-  ends_128_.assign(columns_.size() / (kAcross * kAcross), kEmpty);
-  for (int j = 0; j < rows_; ++j) {
-    for (int i = 0; i < cols_; ++i) {
-      Column& column = at(first_i8_ + i, first_j8_ + j);
-      column.offset = static_cast<std::uint32_t>(layers);
-      layers += static_cast<std::size_t>(column.layers);
-      int& end = ends_128_[static_cast<std::size_t>(j / kAcross) * static_cast<std::size_t>(cols_ / kAcross) +
-                           static_cast<std::size_t>(i / kAcross)];
-      end = std::max(end, column.end());
-    }
+  for (Column& column : columns_) {
+    column.offset = static_cast<std::uint32_t>(layers);
+    layers += static_cast<std::size_t>(column.layers);
   }
   layers_.assign(layers, background);
   largest_.assign(layers, background);
+  ends_32_ = ends_of(kAcross32);
+  ends_128_ = ends_of(kAcross128);
+}
+
+// The highest end in every square of `across` columns of 8.
+std::vector<int> BlockColumns::ends_of(int across) const {
+  const auto wide = static_cast<std::size_t>(cols_ / across), cols = static_cast<std::size_t>(cols_);
+  std::vector<int> ends(wide * static_cast<std::size_t>(rows_ / across), kEmpty);
+  for (std::size_t n = 0; n < columns_.size(); ++n) {
+    const std::size_t i = n % cols / static_cast<std::size_t>(across),
+                      j = n / cols / static_cast<std::size_t>(across);
+    ends[j * wide + i] = std::max(ends[j * wide + i], columns_[n].end());
+  }
+  return ends;
 }
 
 void BlockColumns::fill(const RatioNode128& node, std::int32_t background) {

@@ -16,7 +16,7 @@ namespace sightbound {
 
 class BlockColumns {
  public:
-  static constexpr int kAcross = 16;  // columns of 8 in one of 128
+  static constexpr int kAcross32 = 4, kAcross128 = 16;  // columns of 8 in one of 32, of 128
 
   struct Column {
     int first = kEmpty;  // lowest layer told of, in voxels; below it the tree must be asked
@@ -41,19 +41,23 @@ class BlockColumns {
   const std::int32_t* layers(const Column& column) const { return layers_.data() + column.offset; }
   // pack(largest low, largest high).
   const std::int32_t* largest(const Column& column) const { return largest_.data() + column.offset; }
-  // Above this layer there is nothing but background in the column of 128 x 128.
-  int end_128(int i128, int j128) const {
-    const int i = i128 - first_i8_ / kAcross, j = j128 - first_j8_ / kAcross;
-    if (i < 0 || j < 0 || i >= cols_ / kAcross || j >= rows_ / kAcross) return beyond_.end();
-    return ends_128_[static_cast<std::size_t>(j) * static_cast<std::size_t>(cols_ / kAcross) +
-                     static_cast<std::size_t>(i)];
-  }
+  // Above this layer there is nothing but background in the column of 32 x 32, of 128 x 128.
+  int end_32(int i32, int j32) const { return end_of<kAcross32>(ends_32_, i32, j32); }
+  int end_128(int i128, int j128) const { return end_of<kAcross128>(ends_128_, i128, j128); }
 
  private:
   Column& at(int i8, int j8) {
     return columns_[static_cast<std::size_t>(j8 - first_j8_) * static_cast<std::size_t>(cols_) +
                     static_cast<std::size_t>(i8 - first_i8_)];
   }
+  template <int kAcross>
+  int end_of(const std::vector<int>& ends, int i_large, int j_large) const {
+    const int i = i_large - first_i8_ / kAcross, j = j_large - first_j8_ / kAcross;
+    if (i < 0 || j < 0 || i >= cols_ / kAcross || j >= rows_ / kAcross) return beyond_.end();
+    return ends[static_cast<std::size_t>(j) * static_cast<std::size_t>(cols_ / kAcross) +
+                static_cast<std::size_t>(i)];
+  }
+  std::vector<int> ends_of(int across) const;
   void find_layers(const std::vector<const RatioNode128*>& nodes, std::int32_t background);
   void mind_large_tiles(const RatioTree&);
   void lay_out(std::int32_t background);
@@ -63,7 +67,7 @@ class BlockColumns {
   Column beyond_;  // of all columns without nodes
   std::vector<Column> columns_;
   std::vector<std::int32_t> layers_, largest_;
-  std::vector<int> ends_128_;
+  std::vector<int> ends_32_, ends_128_;
 };
 
 }  // namespace sightbound

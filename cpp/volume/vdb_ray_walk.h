@@ -22,7 +22,7 @@
 
 namespace sightbound {
 
-inline constexpr int kLeaf = 8, kNode = 128, kTop = 4096;  // voxels
+inline constexpr int kLeaf = 8, kQuarter = 32, kNode = 128, kTop = 4096;  // voxels
 
 inline constexpr double kNeverCrossed = std::numeric_limits<double>::infinity();
 
@@ -54,51 +54,12 @@ struct Path {
         per_dy(1 / dy) {}
 
   double height(double t) const { return z + t * dz - drop * t * (1 - t); }
-  Piece piece(double from, double to) const {
-    const double a = height(from), b = height(to);
+  Piece piece(double from, double to) const { return piece(from, height(from), to, height(to)); }
+  Piece piece(double from, double a, double to, double b) const {  // heights a, b
     Piece piece{from, to, std::min(a, b), std::max(a, b), a > b};
     if (from < turn && turn < to) piece.low = std::min(piece.low, height(turn));
     return piece;
   }
-};
-
-// The columns of one side along a path, one after the other.
-class Columns {
- public:
-  Columns(const Path& path, int side, double t)
-      : path_(path), side_(side), i_(start(path.x, path.dx, t)), j_(start(path.y, path.dy, t)) {
-    next_i_ = crossing(path.x, path.dx, path.per_dx, i_);
-    next_j_ = crossing(path.y, path.dy, path.per_dy, j_);
-  }
-
-  int i() const { return i_; }
-  int j() const { return j_; }
-  double end() const { return std::min(next_i_, next_j_); }  // t where the column is left
-  void step() {
-    if (next_i_ <= next_j_) {
-      i_ += path_.dx > 0 ? 1 : -1;
-      next_i_ = crossing(path_.x, path_.dx, path_.per_dx, i_);
-    } else {
-      j_ += path_.dy > 0 ? 1 : -1;
-      next_j_ = crossing(path_.y, path_.dy, path_.per_dy, j_);
-    }
-  }
-
- private:
-  // A place on the border belongs to the column that the path enters.
-  int start(double at, double slope, double t) const {
-    const double place = (at + t * slope) / side_, whole = std::floor(place);
-    return static_cast<int>(whole) - (place == whole && slope < 0 ? 1 : 0);
-  }
-  double crossing(double at, double slope, double per_slope, int index) const {
-    if (slope == 0) return kNeverCrossed;
-    return (static_cast<double>(slope > 0 ? index + 1 : index) * side_ - at) * per_slope;
-  }
-
-  const Path& path_;
-  int side_;
-  int i_, j_;
-  double next_i_, next_j_;
 };
 
 // The floor; std::floor is a call on the plainest processors.
@@ -109,6 +70,46 @@ inline int whole_below(double value) {
 inline int layer(double z) { return whole_below(z); }
 // Sides are powers of two: layers of boxes are those of voxels, shifted.
 inline int layer(double z, int side) { return whole_below(z / side); }
+
+// The columns of one side along a path, one after the other. Which border comes next is anyone's guess, so
+// the step is free of branches.
+template <int kSide>
+class Columns {
+ public:
+  Columns(const Path& path, double t)
+      : x_(path.x, path.dx, path.per_dx, t), y_(path.y, path.dy, path.per_dy, t) {}
+
+  int i() const { return x_.index; }
+  int j() const { return y_.index; }
+  double end() const { return std::min(x_.next, y_.next); }  // t where the column is left
+  void step() {
+    const int over_x = x_.next <= y_.next;
+    x_.advance(over_x);
+    y_.advance(1 - over_x);
+  }
+
+ private:
+  struct Axis {
+    double at, per_slope;
+    int index, stride, ahead;
+    double next;  // t of the border ahead
+
+    Axis(double start, double slope, double per, double t)
+        : at(start), per_slope(per), stride(slope > 0 ? 1 : -1), ahead(slope > 0 ? 1 : 0) {
+      const double place = (at + t * slope) / kSide;
+      index = whole_below(place);
+      // A place on the border belongs to the column that the path enters.
+      if (place == index && slope < 0) --index;
+      if (slope == 0) at = -std::numeric_limits<double>::max(), per_slope = kNeverCrossed;
+      advance(0);
+    }
+    void advance(int columns) {
+      index += columns * stride;
+      next = (static_cast<double>(index + ahead) * kSide - at) * per_slope;
+    }
+  };
+  Axis x_, y_;
+};
 
 // What is walked.
 struct WalkedTrees {
@@ -136,12 +137,12 @@ class RayWalk {
 
   template <class Passed>
   void run(double t0, double t1, Passed& passed) {
-    Columns top(path_, kTop, t0);
+    Columns<kTop> top(path_, t0);
     for (double t = t0; t < t1; top.step()) {
       const double top_end = std::min(top.end(), t1);
       if (top_end <= t) continue;
       const bool crossed =
-          unknown_ == nullptr && passes_tiles<RatioNode4096>(path_.piece(t, top_end), top, kTop, passed);
+          unknown_ == nullptr && passes_tiles<RatioNode4096>(path_.piece(t, top_end), top, passed);
       if (ended_ || (!crossed && !nodes(t, top_end, passed))) return;
       t = top_end;
     }
@@ -151,7 +152,7 @@ class RayWalk {
   // Columns of 128 within [t0, t1].
   template <class Passed>
   bool nodes(double t0, double t1, Passed& passed) {
-    Columns columns(path_, kNode, t0);
+    Columns<kNode> columns(path_, t0);
     for (double t = t0; t < t1; columns.step()) {
       const double end = std::min(columns.end(), t1);
       if (end <= t) continue;
@@ -167,24 +168,39 @@ class RayWalk {
           crossed = true;
           ended_ = !passed.voxel(background_, false, t);
         } else {
-          crossed = passes_tiles<RatioNode128>(piece, columns, kNode, passed);
+          crossed = passes_tiles<RatioNode128>(piece, columns, passed);
         }
       }
-      if (ended_ || (!crossed && !leaves(t, end, passed))) return false;
+      if (ended_ || (!crossed && !quarters(t, end, doubt == PlanState::kSome, passed))) return false;
+      t = end;
+    }
+    return true;
+  }
+
+  // Columns of 32: no nodes of the tree, but most of those near the ground lie below a line that clears it.
+  template <class Passed>
+  bool quarters(double t0, double t1, bool some_unknown, Passed& passed) {
+    Columns<kQuarter> columns(path_, t0);
+    for (double t = t0; t < t1; columns.step()) {
+      const double end = std::min(columns.end(), t1);
+      if (end <= t) continue;
+      const bool above = !some_unknown && path_.piece(t, end).low > columns_.end_32(columns.i(), columns.j());
+      if (!(above ? passed.voxel(background_, false, t) : leaves(t, end, some_unknown, passed))) return false;
       t = end;
     }
     return true;
   }
 
   template <class Passed>
-  bool leaves(double t0, double t1, Passed& passed) {
-    Columns columns(path_, kLeaf, t0);
+  bool leaves(double t0, double t1, bool may_be_unknown, Passed& passed) {
+    Columns<kLeaf> columns(path_, t0);
+    double z = path_.height(t0);
     for (double t = t0; t < t1; columns.step()) {
       const double end = std::min(columns.end(), t1);
       if (end <= t) continue;
-      const Piece piece = path_.piece(t, end);
-      const PlanState doubt =
-          unknown_ != nullptr ? unknown_->of_8(columns.i(), columns.j()) : PlanState::kNone;
+      const double z_end = path_.height(end);
+      const Piece piece = path_.piece(t, z, end, z_end);
+      const PlanState doubt = may_be_unknown ? unknown_->of_8(columns.i(), columns.j()) : PlanState::kNone;
       if (doubt == PlanState::kAll && !passed.unknown(t)) return false;
       const bool some_unknown = doubt == PlanState::kSome;
       if (some_unknown || may_matter(piece, columns, passed)) {
@@ -192,14 +208,14 @@ class RayWalk {
       } else if (!passed.voxel(background_, false, t)) {
         return false;
       }
-      t = end;
+      t = end, z = z_end;
     }
     return true;
   }
 
   // Could anything in the layers of a piece change what has been passed?
   template <class Passed>
-  bool may_matter(const Piece& piece, const Columns& leaf_column, const Passed& passed) const {
+  bool may_matter(const Piece& piece, const Columns<kLeaf>& leaf_column, const Passed& passed) const {
     const BlockColumns::Column& column = columns_.of(leaf_column.i(), leaf_column.j());
     const int from = layer(piece.low);
     if (!column.is_told(from)) return true;
@@ -214,7 +230,7 @@ class RayWalk {
 
   // Voxel by voxel within a column of leaves.
   template <class Passed>
-  bool voxels(const Piece& piece, const Columns& leaf_column, bool some_unknown, Passed& passed) {
+  bool voxels(const Piece& piece, const Columns<kLeaf>& leaf_column, bool some_unknown, Passed& passed) {
     const int i8 = leaf_column.i() * kLeaf, j8 = leaf_column.j() * kLeaf;
     const int k8 = layer(piece.low, kLeaf), k8_end = layer(piece.high, kLeaf);
     bool any_leaf = some_unknown;
@@ -226,18 +242,20 @@ class RayWalk {
       }
       return true;
     }
-    Columns columns(path_, 1, piece.from);
+    Columns<1> columns(path_, piece.from);
+    double z = path_.height(piece.from);
     for (double t = piece.from; t < piece.to; columns.step()) {
       const double end = std::min(columns.end(), piece.to);
       if (end <= t) continue;
+      const double z_end = path_.height(end);
       const int i = columns.i() - i8, j = columns.j() - j8;
       // Rounding may see the path a hair outside: there is nothing left to walk.
       if (i < 0 || j < 0 || i >= kLeaf || j >= kLeaf) {
-        t = end;
+        t = end, z = z_end;
         continue;
       }
       if (some_unknown && unknown_->at(columns.i(), columns.j()) && !passed.unknown(t)) return false;
-      const Piece part = path_.piece(t, end);
+      const Piece part = path_.piece(t, z, end, z_end);
       const int k_low = layer(part.low), k_high = layer(part.high);
       for (int n = k_low; n <= k_high; ++n) {
         const int k = part.falls ? k_low + k_high - n : n;
@@ -245,7 +263,7 @@ class RayWalk {
         const bool two_sided = has_ambiguous_ && ambiguous_.isValueOn(place);
         if (!passed.voxel(value(i, j, k, place), two_sided, t)) return false;
       }
-      t = end;
+      t = end, z = z_end;
     }
     return true;
   }
@@ -275,8 +293,8 @@ class RayWalk {
   std::int32_t tile_at(int k8) const { return tiles_[static_cast<std::size_t>(k8 - first_layer_)]; }
 
   // Passes the boxes of a piece when none of them has children; false when one does and nothing was passed.
-  template <class Node, class Passed>
-  bool passes_tiles(const Piece& piece, const Columns& column, int side, Passed& passed) {
+  template <class Node, int side, class Passed>
+  bool passes_tiles(const Piece& piece, const Columns<side>& column, Passed& passed) {
     const int from = layer(piece.low, side), to = layer(piece.high, side);
     for (int k = from; k <= to; ++k) {
       if (ratios_.template probeConstNode<Node>({column.i() * side, column.j() * side, k * side}) != nullptr)
