@@ -19,6 +19,7 @@ void bind_error_surfaces(py::module_& m);
 void bind_tin(py::module_& m);
 void bind_volume(py::module_& m);
 void bind_hidden_volume(py::module_& m);
+void bind_volume_targets(py::module_& m);
 void bind_defaults(py::module_& m);
 
 }  // namespace sightbound::python

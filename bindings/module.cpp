@@ -25,5 +25,6 @@ PYBIND11_MODULE(_core, m) {
   python::bind_tin(m);
   python::bind_volume(m);
   python::bind_hidden_volume(m);
+  python::bind_volume_targets(m);
   python::bind_defaults(m);
 }

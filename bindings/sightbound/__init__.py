@@ -24,6 +24,7 @@ from .viewshed import viewshed, viewsheds
 from .viewshed_result import ViewshedResult
 from .volume import CoverRasters, ErrorVolume
 from .volume_sight import Subtraction, estimate_volume_viewshed, subtract_observer, volume_viewshed
+from .volume_targets import TargetSight, VolumeLayer, volume_layer, volume_targets
 
 Cancelled = _core.Cancelled
 defaults = _core.defaults
@@ -46,8 +47,10 @@ __all__ = [
     "HiddenVolume",
     "LineOfSight",
     "Subtraction",
+    "TargetSight",
     "Tin",
     "ViewshedResult",
+    "VolumeLayer",
     "defaults",
     "error_surfaces",
     "estimate_error",
@@ -62,5 +65,7 @@ __all__ = [
     "tin_layers",
     "viewshed",
     "viewsheds",
+    "volume_layer",
+    "volume_targets",
     "volume_viewshed",
 ]

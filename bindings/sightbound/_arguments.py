@@ -84,17 +84,19 @@ def positions(name: str, value: Any) -> list[tuple[float, float]]:
     return [pair(f"(x, y) of {kind} {i}", place) for i, place in enumerate(places, 1)]
 
 
-def one_each(name: str, value: Any, count: int, convert: Callable[[str, Any], Any]) -> list[Any]:
-    """`count` values, from one for all or from one per observer."""
+def one_each(
+    name: str, value: Any, count: int, convert: Callable[[str, Any], Any], of: str = "observer"
+) -> list[Any]:
+    """`count` values, from one for all or from one per observer (or whatever they are of)."""
     values = listed(value)
     if values is None or (convert is pair and len(values) == 2 and listed(values[0]) is None):
         return [convert(name, value)] * count
     if len(values) != count:
         raise ValueError(
-            f"{name} has {len(values)} values for {count} observer{'s' * (count > 1)}; "
+            f"{name} has {len(values)} values for {count} {of}{'s' * (count > 1)}; "
             "give one value for all, or one for each."
         )
-    return [convert(f"{name} of observer {i}", one) for i, one in enumerate(values, 1)]
+    return [convert(f"{name} of {of} {i}", one) for i, one in enumerate(values, 1)]
 
 
 def names(value: Any, count: int) -> list[str]:

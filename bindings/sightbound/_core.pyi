@@ -430,6 +430,43 @@ class HiddenVolume:
     @property
     def bytes(self) -> int: ...
 
+class VolumeLayer:
+    def write(
+        self, confidence: str, verdict: str, creation_options: list[str], threads: int, progress: _Progress
+    ) -> None: ...
+    @property
+    def verdict(self) -> npt.NDArray[np.uint8]: ...
+    @property
+    def confidence(self) -> _Floats: ...
+    @property
+    def geotransform(self) -> _Geotransform: ...
+    @property
+    def crs_wkt(self) -> str: ...
+    @property
+    def observers(self) -> list[str]: ...
+    @property
+    def error_model(self) -> str: ...
+    @property
+    def counts(self) -> dict[str, Any]: ...
+    @property
+    def warnings(self) -> list[str]: ...
+
+def volume_layer(
+    volume: ErrorVolume,
+    views: list[ViewVolume],
+    target_height: float,
+    options: VolumeSightOptions,
+    progress: _Progress,
+) -> VolumeLayer: ...
+def volume_targets(
+    volume: ErrorVolume,
+    views: list[ViewVolume],
+    targets: list[tuple[float, float]],
+    target_heights: list[float],
+    target_height_reference: str,
+    options: VolumeSightOptions,
+    progress: _Progress,
+) -> tuple[npt.NDArray[np.uint8], _Floats, dict[str, Any], list[str]]: ...
 def open_hidden_volume(path: str, progress: _Progress) -> HiddenVolume: ...
 def estimate_sight(
     volume: ErrorVolume, views: list[ViewVolume], options: VolumeSightOptions, progress: _Progress

@@ -92,7 +92,7 @@ def volume_viewshed(
         MemoryError: the job would exceed the memory budget; nothing was begun.
         Cancelled: progress returned False.
     """
-    job = _Job(**locals())
+    job = Job(**locals())
     return wrapped(*core.volume_viewshed(job.volume, job.views, job.options, progress))
 
 
@@ -122,7 +122,7 @@ def estimate_volume_viewshed(
 
     The seconds come from some lines timed through the volume. Raises what volume_viewshed() raises.
     """
-    job = _Job(**locals())
+    job = Job(**locals())
     return core.estimate_sight(job.volume, job.views, job.options, progress)
 
 
@@ -163,14 +163,14 @@ def subtract_observer(
                  target_height_spacing=lattice["height_spacing"], confidence=before.confidence)
     for name in ("hidden", "before", "lattice", "height"):
         given.pop(name)
-    job = _Job(**given)
+    job = Job(**given)
     found, gain, estimate, warnings = core.subtract_observer(
         before, job.volume, job.views, job.options, arguments.number("height", height), progress
     )
     return Subtraction(wrapped(found, estimate, warnings), gain)
 
 
-class _Job:
+class Job:
     """The arguments, checked, as the core takes them."""
 
     __slots__ = ("options", "views", "volume")
@@ -186,12 +186,9 @@ class _Job:
         options.holds_for = arguments.word("holds_for", given["holds_for"])
         options.height_reference = arguments.word("height_reference", given["height_reference"])
         options.max_distance = arguments.limit("max_distance", given["max_distance"])
-        options.target_spacing = arguments.number("target_spacing", given["target_spacing"])
-        options.target_ceiling = arguments.number("target_ceiling", given["target_ceiling"])
-        if given["target_height_spacing"] is not None:
-            options.target_height_spacing = arguments.number("target_height_spacing", given["target_height_spacing"])
-        if given["view_spacing"] is not None:
-            options.view_spacing = arguments.number("view_spacing", given["view_spacing"])
+        for spacing in ("target_spacing", "target_ceiling", "target_height_spacing", "view_spacing"):
+            if given.get(spacing) is not None:
+                setattr(options, spacing, arguments.number(spacing, given[spacing]))
         options.most_lines = arguments.number("most_lines", given["most_lines"])
         options.threads = arguments.threads(given["threads"])
         options.memory_budget = arguments.memory_budget(given["memory_budget"])

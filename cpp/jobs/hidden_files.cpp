@@ -20,16 +20,29 @@ std::string text(double value) {
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
 }
 
-std::map<std::string, std::string> items_of(const HiddenVolume& hidden) {
+using Items = std::map<std::string, std::string>;
+
+Items items_of(const HiddenVolumeInfo& info) {
   std::string observers;
-  for (const std::string& one : hidden.info().observers) observers += (observers.empty() ? "" : "\n") + one;
+  for (const std::string& one : info.observers) observers += (observers.empty() ? "" : "\n") + one;
   return {{"SIGHTBOUND_VERSION", version()},
-          {"SIGHTBOUND_CONFIDENCE", text(hidden.info().confidence)},
-          {"SIGHTBOUND_ERROR_MODEL", hidden.info().error_model},
-          {"SIGHTBOUND_OBSERVERS", observers},
-          {"SIGHTBOUND_TARGET_SPACING", text(hidden.lattice().spacing_m)},
-          {"SIGHTBOUND_TARGET_HEIGHT_SPACING", text(hidden.lattice().height_spacing_m)},
-          {"SIGHTBOUND_TARGET_CEILING", text(hidden.lattice().ceiling_m)}};
+          {"SIGHTBOUND_CONFIDENCE", text(info.confidence)},
+          {"SIGHTBOUND_ERROR_MODEL", info.error_model},
+          {"SIGHTBOUND_OBSERVERS", observers}};
+}
+
+Items items_of(const HiddenVolume& hidden) {
+  Items items = items_of(hidden.info());
+  items["SIGHTBOUND_TARGET_SPACING"] = text(hidden.lattice().spacing_m);
+  items["SIGHTBOUND_TARGET_HEIGHT_SPACING"] = text(hidden.lattice().height_spacing_m);
+  items["SIGHTBOUND_TARGET_CEILING"] = text(hidden.lattice().ceiling_m);
+  return items;
+}
+
+RasterMetadata band_of(const std::string& quantity, const std::string& unit, Items items,
+                       const std::vector<std::string>& creation_options) {
+  items["SIGHTBOUND_QUANTITY"] = quantity;
+  return {quantity, unit, std::move(items), creation_options};
 }
 
 bool has_hidden(const HiddenVolume& hidden) {
@@ -81,9 +94,7 @@ std::vector<std::string> write_hidden(const HiddenVolume& hidden, const HiddenFi
   std::vector<RasterOutput> outputs;
   const auto add = [&](const std::string& path, const Grid<float>& grid, const std::string& quantity) {
     if (path.empty()) return;
-    RasterMetadata metadata{quantity, "m", items_of(hidden), files.creation_options};
-    metadata.items["SIGHTBOUND_QUANTITY"] = quantity;
-    outputs.push_back({path, &grid, std::move(metadata)});
+    outputs.push_back({path, &grid, band_of(quantity, "m", items_of(hidden), files.creation_options)});
   };
   add(files.lowest_visible_height, rasters.lowest_visible_height,
       "lowest height above ground from which on targets are certainly visible");
@@ -103,6 +114,21 @@ std::vector<std::string> write_hidden(const HiddenVolume& hidden, const HiddenFi
   if (meshes) warnings = write_meshes(hidden, files, progress);
   progress.finish();
   return warnings;
+}
+
+void write_layer(const LayerResult& layer, const LayerFiles& files, int threads, Progress& progress) {
+  Items items = items_of(layer.info);
+  items["SIGHTBOUND_TARGET_HEIGHT"] = text(layer.height_m);
+  items["SIGHTBOUND_TARGET_SPACING"] = text(layer.spacing_m);
+  std::vector<RasterOutput> outputs;
+  const auto add = [&](const std::string& path, auto* grid, const std::string& quantity) {
+    if (!path.empty()) outputs.push_back({path, grid, band_of(quantity, "", items, files.creation_options)});
+  };
+  add(files.confidence, &layer.confidence, "proven pointwise confidence of visibility");
+  add(files.verdict, &layer.verdict, "verdict: 0 hidden, 1 uncertain, 2 visible");
+  if (outputs.empty()) throw InvalidInput("There is nothing to write: name at least one output file.");
+  write_rasters(outputs, layer.geotransform, layer.crs_wkt, threads, progress);
+  progress.finish();
 }
 
 }  // namespace sightbound

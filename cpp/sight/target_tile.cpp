@@ -50,17 +50,22 @@ double normal_quantile(double p) {
 
 template <class Visit>
 void TargetTile::each_column(const Block& block, const Visit& visit) const {
-  const int end_i = std::min(block.i + block.side, ask_.targets.nx),
-            end_j = std::min(block.j + block.side, ask_.targets.ny);
+  const int end_i = std::min(block.i + block.side, targets_.nx),
+            end_j = std::min(block.j + block.side, targets_.ny);
   for (int j = block.j; j < end_j; ++j) {
     for (int i = block.i; i < end_i; ++i) visit(i, j);
   }
 }
 
-TargetTile::TargetTile(const TileQuestion& ask, int i, int j, Progress& progress)
-    : ask_(ask), progress_(progress), whole_{i, j, kSide}, hint_(ask.views.places().size()) {
+TargetTile::TargetTile(const TileQuestion& ask, const TargetLattice& targets, int i, int j,
+                       Progress& progress)
+    : ask_(ask),
+      targets_(targets),
+      progress_(progress),
+      whole_{i, j, kSide},
+      hint_(ask.views.places().size()) {
   each_column(whole_, [&](int at_i, int at_j) {
-    answers_[slot(at_i, at_j)].resize(static_cast<std::size_t>(ask_.targets.column(at_i, at_j).size()));
+    answers_[slot(at_i, at_j)].resize(static_cast<std::size_t>(targets_.column(at_i, at_j).size()));
   });
 }
 
@@ -103,10 +108,10 @@ void TargetTile::see(const Block& block, const std::vector<const Node*>& views) 
 }
 
 void TargetTile::see_column(int i, int j, const std::vector<const Node*>& views) {
-  const TargetColumn& column = ask_.targets.column(i, j);
+  const TargetColumn& column = targets_.column(i, j);
   if (column.size() == 0) return;
   progress_.check();
-  EndZone target = ask_.sight.zone(ask_.targets.centre(i, j, column.first));
+  EndZone target = ask_.sight.zone(targets_.centre(i, j, column.first));
   std::vector<int> all(static_cast<std::size_t>(column.size()));
   std::iota(all.begin(), all.end(), column.first);
   // Who saw the column before sees this one as a rule.
@@ -145,18 +150,18 @@ void TargetTile::split(const Node& node, std::vector<const Node*>& into) const {
 }
 
 bool TargetTile::is_too_far(const Node& node, int i, int j) const {
-  const Xyz centre = ask_.targets.centre(i, j, 0);
+  const Xyz centre = targets_.centre(i, j, 0);
   return nearest_in_plan(node.places, {centre, centre}) > ask_.options.max_distance_m;
 }
 
 // The layers of which the views of a node may still change the answer.
 std::vector<int> TargetTile::unbeaten(const Node& node, int i, int j, const std::vector<int>& layers) {
   if (!is_any() || !ask_.solid) return layers;
-  const int first = ask_.targets.column(i, j).first;
+  const int first = targets_.column(i, j).first;
   std::vector<int> open;
   for (const int k : layers) {
     TargetAnswer& answer = answers_[slot(i, j)][static_cast<std::size_t>(k - first)];
-    if (!is_beaten(node, answer, box_of(i, j, k), ask_.targets.centre(i, j, k))) open.push_back(k);
+    if (!is_beaten(node, answer, box_of(i, j, k), targets_.centre(i, j, k))) open.push_back(k);
   }
   return open;
 }
@@ -191,7 +196,7 @@ void TargetTile::see_from(std::size_t place, int i, int j, const std::vector<int
   std::vector<TargetAnswer>& answers = answers_[slot(i, j)];
   const auto is_sure = [&](int k, std::uint8_t verdict) {
     const TargetAnswer seen = judge(place, i, j, k, target);
-    TargetAnswer& answer = answers[static_cast<std::size_t>(k - ask_.targets.column(i, j).first)];
+    TargetAnswer& answer = answers[static_cast<std::size_t>(k - targets_.column(i, j).first)];
     answer = join(answer, seen);
     return ask_.monotone && seen == sure(verdict);
   };
@@ -204,14 +209,13 @@ void TargetTile::see_from(std::size_t place, int i, int j, const std::vector<int
 }
 
 TargetAnswer TargetTile::judge(std::size_t place, int i, int j, int k, EndZone& target) const {
-  target.move_to_height(ask_.targets.height_of(k));
+  target.move_to_height(targets_.centre(i, j, k).z);
   const RatioInterval ratio = ask_.sight.ratio(ask_.zones[place], target);
   const auto within = [most = static_cast<float>(ask_.most)](float b) { return std::clamp(b, -most, most); };
   TargetAnswer answer{static_cast<float>(proven_probability({within(ratio.low), within(ratio.high)})),
                       verdict_of(ratio, ask_.quantile)};
   if (answer.verdict == kUncertain) return answer;
-  const TargetAnswer& known =
-      answers_[slot(i, j)][static_cast<std::size_t>(k - ask_.targets.column(i, j).first)];
+  const TargetAnswer& known = answers_[slot(i, j)][static_cast<std::size_t>(k - targets_.column(i, j).first)];
   const bool matters = join(known, answer).verdict != join(known, {answer.p, kUncertain}).verdict;
   if (!matters || !holds_around(answer.verdict, place, box_of(i, j, k))) answer.verdict = kUncertain;
   return answer;
@@ -282,7 +286,7 @@ bool TargetTile::is_settled(int i, int j) const {
 void TargetTile::give(const Block& block, std::uint8_t verdict, int bottom, int top) {
   const TargetAnswer given = sure(verdict);
   each_column(block, [&](int i, int j) {
-    const TargetColumn& column = ask_.targets.column(i, j);
+    const TargetColumn& column = targets_.column(i, j);
     for (int k = std::max(column.first, bottom); k <= std::min(column.last, top); ++k) {
       TargetAnswer& answer = answers_[slot(i, j)][static_cast<std::size_t>(k - column.first)];
       answer = join(answer, given);
@@ -295,7 +299,7 @@ bool TargetTile::box_of(const Block& block, Box3& box) const {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   box = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
   each_column(block, [&](int i, int j) {
-    const TargetColumn& column = ask_.targets.column(i, j);
+    const TargetColumn& column = targets_.column(i, j);
     if (column.size() == 0) return;
     const Xyz low = box_of(i, j, column.first).low, high = box_of(i, j, column.last).high;
     box.low = {std::min(box.low.x, low.x), std::min(box.low.y, low.y), std::min(box.low.z, low.z)};
@@ -306,9 +310,9 @@ bool TargetTile::box_of(const Block& block, Box3& box) const {
 
 // No place beneath the ground is asked about.
 Box3 TargetTile::box_of(int i, int j, int k) const {
-  const Xyz centre = ask_.targets.centre(i, j, k);
+  const Xyz centre = targets_.centre(i, j, k);
   Box3 box{centre - ask_.target_room, centre + ask_.target_room};
-  const auto ground = static_cast<double>(ask_.targets.column(i, j).ground);
+  const auto ground = static_cast<double>(targets_.column(i, j).ground);
   box.low.z = std::max(box.low.z, std::min(ground, centre.z));
   return box;
 }

@@ -22,7 +22,6 @@ namespace sightbound {
 // What the tiles of a viewshed share.
 struct TileQuestion {
   const VolumeSight& sight;
-  const TargetLattice& targets;
   const VolumeViewshedOptions& options;
   double quantile;  // z(c)
   double most;      // K: beyond, nothing more is told
@@ -41,10 +40,12 @@ class TargetTile {
  public:
   static constexpr int kSide = 16;  // columns
 
-  // Columns from (i, j).
-  TargetTile(const TileQuestion&, int i, int j, Progress&);
+  // Columns from (i, j) of `targets`.
+  TargetTile(const TileQuestion&, const TargetLattice& targets, int i, int j, Progress&);
 
   void see();
+  // Of a column in the tile, from its first layer to its last.
+  const std::vector<TargetAnswer>& answers(int i, int j) const { return answers_[slot(i, j)]; }
   void put_into(HiddenVolumeBuilder&) const;
 
  private:
@@ -85,6 +86,7 @@ class TargetTile {
   bool corners_hide(const Box3& views, const Box3& target) const;
 
   const TileQuestion& ask_;
+  const TargetLattice& targets_;
   Progress& progress_;
   Block whole_;
   std::array<std::vector<TargetAnswer>, kSide * kSide> answers_;

@@ -42,4 +42,10 @@ HiddenVolume volume_viewshed(const VolumeSight& sight, const std::vector<ViewPla
                              const VolumeViewshedOptions& options, const Workers& workers,
                              Progress& progress);
 
+// The same for single places (local metres), one answer each: that of a target whose centre is there, with
+// HoldsFor::kTarget the same as kPlace. Places that have no terrain above or beneath have no verdict.
+std::vector<TargetAnswer> see_places(const VolumeSight& sight, const std::vector<ViewPlace>& views,
+                                     const std::vector<Xyz>& targets, const VolumeViewshedOptions& options,
+                                     const Workers& workers, Progress& progress);
+
 }  // namespace sightbound

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "base/number_text.h"
@@ -71,6 +72,47 @@ TargetColumn column_of(const TerrainSpan& span, const TargetLattice& lattice) {
   return column;
 }
 
+TargetColumn target_on(const TerrainSpan& span, const TargetLattice&) {
+  if (std::isnan(span.highest)) return {std::numeric_limits<float>::quiet_NaN(), 0, -1};
+  return {static_cast<float>(span.highest), 0, 0};
+}
+
+double down_to(double value, double step) { return std::floor(value / step) * step; }
+
+// Over the whole surface; the corner in plan, and the columns as `make` tells them from the terrain at their
+// centres.
+std::shared_ptr<const TargetLattice> with_columns(TargetLattice asked, const Surface& surface,
+                                                  TargetColumn (*make)(const TerrainSpan&,
+                                                                       const TargetLattice&),
+                                                  const Workers& workers, Progress& progress) {
+  auto lattice = std::make_shared<TargetLattice>(std::move(asked));
+  const Box3& bounds = surface.bounds();
+  lattice->frame = surface.frame();
+  lattice->corner.x = down_to(bounds.low.x, lattice->spacing_m);
+  lattice->corner.y = down_to(bounds.low.y, lattice->spacing_m);
+  const double nx = std::ceil((bounds.high.x - lattice->corner.x) / lattice->spacing_m);
+  const double ny = std::ceil((bounds.high.y - lattice->corner.y) / lattice->spacing_m);
+  if (!(nx * ny < 2147483647.0)) {
+    throw InvalidInput("target_spacing is " + number_text(lattice->spacing_m, 6) +
+                       " m: " + number_text(nx * ny, 6) +
+                       " columns of targets; at most 2147483647 are allowed. Give a larger one.");
+  }
+  lattice->nx = std::max(static_cast<int>(nx), 1);
+  lattice->ny = std::max(static_cast<int>(ny), 1);
+  lattice->columns.resize(static_cast<std::size_t>(lattice->nx) * static_cast<std::size_t>(lattice->ny));
+
+  workers.for_each(static_cast<std::size_t>(lattice->ny), [&](std::size_t j) {
+    std::vector<std::uint32_t> numbers;
+    for (int i = 0; i < lattice->nx; ++i) {
+      const Xyz centre = lattice->centre(i, static_cast<int>(j), 0);
+      lattice->columns[lattice->number(i, static_cast<int>(j))] =
+          make(terrain_over(surface, centre.x, centre.y, numbers), *lattice);
+    }
+    progress.advance(1.0 / lattice->ny);
+  });
+  return lattice;
+}
+
 }  // namespace
 
 TerrainSpan terrain_over(const Surface& surface, double x, double y, std::vector<std::uint32_t>& numbers) {
@@ -126,7 +168,7 @@ bool operator==(const TargetLattice& a, const TargetLattice& b) {
   return a.frame.x == b.frame.x && a.frame.y == b.frame.y &&
          a.frame.metres_per_unit == b.frame.metres_per_unit && a.frame.crs_wkt == b.frame.crs_wkt &&
          a.corner == b.corner && a.spacing_m == b.spacing_m && a.height_spacing_m == b.height_spacing_m &&
-         a.ceiling_m == b.ceiling_m && a.nx == b.nx && a.ny == b.ny &&
+         a.ceiling_m == b.ceiling_m && a.follows_ground == b.follows_ground && a.nx == b.nx && a.ny == b.ny &&
          std::equal(a.columns.begin(), a.columns.end(), b.columns.begin(), b.columns.end(), same);
 }
 
@@ -134,44 +176,38 @@ std::shared_ptr<const TargetLattice> lattice_above(const Surface& surface, const
                                                    const Workers& workers, Progress& progress) {
   require_length(options.spacing_m, "target_spacing");
   require_length(options.ceiling_m, "target_ceiling");
-  auto lattice = std::make_shared<TargetLattice>();
-  lattice->frame = surface.frame();
-  lattice->spacing_m = options.spacing_m;
-  lattice->ceiling_m = options.ceiling_m;
-  lattice->height_spacing_m = options.height_spacing_m != 0
-                                  ? options.height_spacing_m
-                                  : std::min(options.spacing_m, options.ceiling_m / 4);
-  require_length(lattice->height_spacing_m, "target_height_spacing");
-  if (lattice->height_spacing_m > options.ceiling_m) {
-    throw InvalidInput("target_height_spacing is " + number_text(lattice->height_spacing_m, 6) +
+  TargetLattice lattice;
+  lattice.spacing_m = options.spacing_m;
+  lattice.ceiling_m = options.ceiling_m;
+  lattice.height_spacing_m = options.height_spacing_m != 0
+                                 ? options.height_spacing_m
+                                 : std::min(options.spacing_m, options.ceiling_m / 4);
+  require_length(lattice.height_spacing_m, "target_height_spacing");
+  if (lattice.height_spacing_m > options.ceiling_m) {
+    throw InvalidInput("target_height_spacing is " + number_text(lattice.height_spacing_m, 6) +
                        " m, more than target_ceiling (" + number_text(options.ceiling_m, 6) +
                        " m): columns would have no target. Give at most the ceiling.");
   }
+  lattice.corner.z = down_to(surface.bounds().low.z, lattice.height_spacing_m);
+  return with_columns(std::move(lattice), surface, column_of, workers, progress);
+}
 
-  const Box3& bounds = surface.bounds();
-  const auto down_to = [](double value, double step) { return std::floor(value / step) * step; };
-  lattice->corner = {down_to(bounds.low.x, lattice->spacing_m), down_to(bounds.low.y, lattice->spacing_m),
-                     down_to(bounds.low.z, lattice->height_spacing_m)};
-  const double nx = std::ceil((bounds.high.x - lattice->corner.x) / lattice->spacing_m);
-  const double ny = std::ceil((bounds.high.y - lattice->corner.y) / lattice->spacing_m);
-  if (!(nx * ny < 2147483647.0)) {
-    throw InvalidInput("target_spacing is " + number_text(lattice->spacing_m, 6) +
-                       " m: " + number_text(nx * ny, 6) +
-                       " columns of targets; at most 2147483647 are allowed. Give a larger one.");
-  }
-  lattice->nx = std::max(static_cast<int>(nx), 1);
-  lattice->ny = std::max(static_cast<int>(ny), 1);
-  lattice->columns.resize(static_cast<std::size_t>(lattice->nx) * static_cast<std::size_t>(lattice->ny));
+std::shared_ptr<const TargetLattice> layer_above(const Surface& surface, double spacing_m, double height_m,
+                                                 const Workers& workers, Progress& progress) {
+  require_length(spacing_m, "target_spacing");
+  require_length(height_m, "target_height");
+  TargetLattice lattice;
+  lattice.spacing_m = spacing_m;
+  lattice.ceiling_m = lattice.corner.z = height_m;
+  lattice.follows_ground = true;
+  return with_columns(std::move(lattice), surface, target_on, workers, progress);
+}
 
-  workers.for_each(static_cast<std::size_t>(lattice->ny), [&](std::size_t j) {
-    std::vector<std::uint32_t> numbers;
-    for (int i = 0; i < lattice->nx; ++i) {
-      const Xyz centre = lattice->centre(i, static_cast<int>(j), 0);
-      lattice->columns[lattice->number(i, static_cast<int>(j))] =
-          column_of(terrain_over(surface, centre.x, centre.y, numbers), *lattice);
-    }
-    progress.advance(1.0 / lattice->ny);
-  });
+TargetLattice lattice_of(const Xyz& target, double ground) {
+  TargetLattice lattice;
+  lattice.corner = target;
+  lattice.nx = lattice.ny = 1;
+  lattice.columns = {{static_cast<float>(ground), 0, 0}};
   return lattice;
 }
 

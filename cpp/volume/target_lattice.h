@@ -28,9 +28,10 @@ struct TargetColumn {
 
 struct TargetLattice {
   VolumeFrame frame;
-  Xyz corner;  // of target (0, 0, 0), local metres
+  Xyz corner;  // of target (0, 0, 0), local metres; its height above the ground where layers follow that
   double spacing_m = 0, height_spacing_m = 0;
-  double ceiling_m = 0;  // above ground, up to which columns were asked to reach
+  double ceiling_m = 0;         // above ground, up to which columns were asked to reach
+  bool follows_ground = false;  // one layer at a height above each column's ground, without thickness
   int nx = 0, ny = 0;
   std::vector<TargetColumn> columns;  // nx * ny; column (i, j) is number j * nx + i
 
@@ -40,7 +41,8 @@ struct TargetLattice {
   const TargetColumn& column(int i, int j) const { return columns[number(i, j)]; }
   double height_of(int k) const { return corner.z + (k + 0.5) * height_spacing_m; }  // of a layer's centres
   Xyz centre(int i, int j, int k) const {
-    return {corner.x + (i + 0.5) * spacing_m, corner.y + (j + 0.5) * spacing_m, height_of(k)};
+    const double base = follows_ground ? static_cast<double>(column(i, j).ground) : 0;
+    return {corner.x + (i + 0.5) * spacing_m, corner.y + (j + 0.5) * spacing_m, base + height_of(k)};
   }
   double column_m2() const { return spacing_m * spacing_m; }
   double target_m3() const { return column_m2() * height_spacing_m; }
@@ -78,5 +80,13 @@ struct LatticeOptions {
 // Cancelled.
 std::shared_ptr<const TargetLattice> lattice_above(const Surface&, const LatticeOptions&, const Workers&,
                                                    Progress&);
+
+// The same columns with one target each, `height_m` (0.001 to 1e6 m) above the highest of the terrain at the
+// column's centre: who is asked about on a bridge stands on it.
+std::shared_ptr<const TargetLattice> layer_above(const Surface&, double spacing_m, double height_m,
+                                                 const Workers&, Progress&);
+
+// One target alone, and the ground beneath it. No Surface is asked.
+TargetLattice lattice_of(const Xyz& target, double ground);
 
 }  // namespace sightbound

@@ -117,6 +117,82 @@ TEST(VolumeViewshed, is_the_same_for_any_number_of_threads) {
   EXPECT_TRUE(ground.see(views, {}, 1) == ground.see(views, {}, 3));
 }
 
+// A place by itself is told what the lattice's target there is told; p but for the half floats.
+TEST(VolumeViewshed, listed_places_are_told_what_the_lattice_is_told) {
+  std::size_t visible = 0, hidden = 0;
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    const Ground ground(seed);
+    VolumeViewshedOptions options;
+    options.holds_for = HoldsFor::kPlace;
+    options.seen_from = seed == 2 ? SeenFrom::kAll : SeenFrom::kAny;
+    if (seed == 1) options.max_distance_m = 90;
+    const std::vector<ViewPlace> views = points(ground, seed + 80);
+    const HiddenVolume seen = ground.see(views, options);
+    std::vector<Xyz> places;
+    std::vector<TargetAnswer> expected;
+    for (int j = 0; j < ground.targets->ny; ++j) {
+      for (int i = 0; i < ground.targets->nx; ++i) {
+        const TargetColumn& column = ground.targets->column(i, j);
+        for (int k = column.first; k <= column.last; ++k) {
+          places.push_back(ground.targets->centre(i, j, k));
+          expected.push_back(seen.at(i, j, k));
+        }
+      }
+    }
+    Progress progress;
+    const std::vector<TargetAnswer> found =
+        see_places(ground.sight, views, places, options, Workers(2), progress);
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      ASSERT_EQ(found[n].verdict, expected[n].verdict);
+      if (found[n].verdict != kNoVerdict) {
+        EXPECT_NEAR(found[n].p, expected[n].p, 1e-3);
+      }
+      visible += found[n].verdict == kVisible;
+      hidden += found[n].verdict == kHidden;
+    }
+    EXPECT_EQ(found, see_places(ground.sight, views, places, options, Workers(1), progress));
+    // Off the terrain nothing is told.
+    const Xyz off = ground.surface->bounds().high + Xyz{50, 50, 0};
+    EXPECT_EQ(see_places(ground.sight, views, {off}, options, Workers(1), progress)[0].verdict, kNoVerdict);
+  }
+  EXPECT_GT(visible, 1000u);
+  EXPECT_GT(hidden, 1000u);
+}
+
+// A layer is the list of its centres.
+TEST(VolumeViewshed, a_layer_is_told_what_its_places_are_told) {
+  for (const HoldsFor holds_for : {HoldsFor::kPlace, HoldsFor::kTarget}) {
+    Ground ground(5);
+    Progress progress;
+    ground.targets = layer_above(*ground.surface, 7, 8, Workers(2), progress);
+    VolumeViewshedOptions options;
+    options.holds_for = holds_for;
+    const std::vector<ViewPlace> views = points(ground, 85);
+    const HiddenVolume seen = ground.see(views, options);
+    int same = 0, more = 0, visible = 0;
+    for (int j = 0; j < ground.targets->ny; ++j) {
+      for (int i = 0; i < ground.targets->nx; ++i) {
+        const Xyz centre = ground.targets->centre(i, j, 0);
+        if (ground.targets->column(i, j).size() == 0) continue;
+        const TargetAnswer alone =
+            see_places(ground.sight, views, {centre}, options, Workers(1), progress)[0];
+        const TargetAnswer told = seen.at(i, j, 0);
+        if (told.verdict == kUncertain && alone.verdict != kUncertain) {
+          ++more;
+        } else {
+          ASSERT_EQ(told.verdict, alone.verdict);
+          ++same;
+        }
+        visible += told.verdict == kVisible;
+      }
+    }
+    EXPECT_GT(same, 100);
+    EXPECT_GT(visible, 20);
+    // Claims for whole squares are fewer than for their middles.
+    EXPECT_EQ(more > 0, holds_for == HoldsFor::kTarget);
+  }
+}
+
 // Claims only shrink as they have to hold for more, and never turn round.
 TEST(VolumeViewshed, claims_less_the_farther_claims_have_to_hold) {
   for (unsigned seed = 0; seed < 4; ++seed) {

@@ -50,6 +50,44 @@ TEST(TargetLattice, AboveTheGroundOfADem) {
   EXPECT_GT(some, 1000u);
 }
 
+// One target a column, over the highest of the terrain.
+TEST(TargetLattice, OneLayerFollowsTheGround) {
+  Progress progress;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const RandomDem dem = random_dem(seed);
+    const auto layer = layer_above(*dem.surface(), 3.7, 1.8, Workers(2), progress);
+    const auto above = lattice_above(*dem.surface(), {3.7, 0, 9}, Workers(2), progress);
+    ASSERT_EQ(layer->nx, above->nx);
+    ASSERT_EQ(layer->ny, above->ny);
+    for (int j = 0; j < layer->ny; ++j) {
+      for (int i = 0; i < layer->nx; ++i) {
+        const Xyz centre = layer->centre(i, j, 0);
+        EXPECT_EQ(centre.x, above->centre(i, j, 0).x);
+        EXPECT_EQ(centre.y, above->centre(i, j, 0).y);
+        const double ground = dem.place(centre.x, centre.y).height;
+        ASSERT_EQ(layer->column(i, j).size(), std::isnan(ground) ? 0 : 1);
+        if (!std::isnan(ground)) {
+          ASSERT_NEAR(centre.z, ground + 1.8, 1e-4);
+        }
+      }
+    }
+  }
+  const auto surface = random_dem(1).surface();
+  const auto made = [&](double spacing, double height) {
+    layer_above(*surface, spacing, height, Workers(1), progress);
+  };
+  EXPECT_TRUE(says(complaint<InvalidInput>([&] { made(0, 2); }), "target_spacing is 0"));
+  EXPECT_TRUE(says(complaint<InvalidInput>([&] { made(5, 0); }), "target_height is 0"));
+  EXPECT_TRUE(says(complaint<InvalidInput>([&] { made(5, std::nan("")); }), "target_height"));
+}
+
+TEST(TargetLattice, OfOnePlaceIsThatPlace) {
+  const Xyz place{0.1, -7.3, 123.456};
+  const TargetLattice alone = lattice_of(place, 120);
+  EXPECT_EQ(alone.targets(), 1u);
+  EXPECT_EQ(alone.centre(0, 0, 0), place);
+}
+
 TEST(TargetLattice, RefusesNonsense) {
   Progress progress;
   const auto surface = random_dem(1).surface();
