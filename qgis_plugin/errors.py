@@ -37,6 +37,7 @@ _PARAMETER_OF = {
     "seen_from": "SEEN_FROM",
     "holds_for": "HOLDS_FOR",
     "most_lines": "MOST_LINES",
+    "target_height_reference": "TARGET_HEIGHT_REFERENCE",
     "voxel_m": "VOXEL",
     "voxel_height": "VOXEL_HEIGHT",
     "voxel_height_m": "VOXEL_HEIGHT",

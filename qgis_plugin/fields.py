@@ -17,6 +17,15 @@ def text_field(name):
     return QgsField(name, QMetaType.Type.QString if _new() else QVariant.String)
 
 
+def add_unique(fields, make, name):
+    """Appends a field, numbered where there is one of that name."""
+    unique, count = name, 1
+    while fields.lookupField(unique) >= 0:
+        count += 1
+        unique = f"{name}_{count}"
+    fields.append(make(unique))
+
+
 def _new():
     """From 3.38 on fields are made with QMetaType; QVariant's own types are gone in Qt6."""
     return Qgis.QGIS_VERSION_INT >= 33800

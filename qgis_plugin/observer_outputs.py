@@ -11,7 +11,7 @@ from qgis.core import QgsFeature, QgsFeatureSink, QgsFields, QgsWkbTypes
 
 from .errors import bad_input, core_errors
 from .feedback import Progress
-from .fields import number_field, text_field
+from .fields import add_unique, number_field, text_field
 from .observers import file_names
 from .styling import style_path, style_when_loaded
 from .text import tr
@@ -99,8 +99,4 @@ def write_observer_table(algorithm, job, report, parameters, context):
 def _append_columns(fields):
     """Appends the columns, numbered where the input has one of that name."""
     for name in _COLUMNS:
-        unique, count = name, 1
-        while fields.lookupField(unique) >= 0:
-            count += 1
-            unique = f"{name}_{count}"
-        fields.append(text_field(unique) if name == "status" else number_field(unique))
+        add_unique(fields, text_field if name == "status" else number_field, name)

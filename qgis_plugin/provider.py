@@ -12,6 +12,7 @@ from .algorithms.confidence_viewshed import ConfidenceViewshed
 from .algorithms.error_surfaces import ErrorSurfaces
 from .algorithms.line_of_sight_profile import LineOfSightProfile
 from .algorithms.subtract_observer import SubtractObserver
+from .algorithms.volume_targets import VolumeTargets
 from .algorithms.volume_to_raster import VolumeToRaster
 from .algorithms.volume_viewshed import VolumeViewshed
 
@@ -22,6 +23,7 @@ _ALGORITHMS = (
     LineOfSightProfile,
     BuildErrorVolume,
     VolumeViewshed,
+    VolumeTargets,
     SubtractObserver,
     VolumeToRaster,
 )

@@ -17,12 +17,13 @@ def given(parameters, name):
     value = parameters.get(name)
     if isinstance(value, QgsProcessingFeatureSourceDefinition):
         value = value.source
-    if isinstance(value, QgsProperty) and not _varies(value):
+    if isinstance(value, QgsProperty) and not is_varying(value):
         value = value.staticValue()
     return not is_null(value) and value != ""
 
 
-def _varies(value):
+def is_varying(value):
+    """Does a field or an expression give this parameter?"""
     return isinstance(value, QgsProperty) and value.propertyType() != QgsProperty.Type.StaticProperty
 
 
@@ -48,7 +49,7 @@ class Varying:
         self.name = name
         self._definition = algorithm.parameterDefinition(name)
         self._expressions = expressions
-        self._property = parameters.get(name) if _varies(parameters.get(name)) else None
+        self._property = parameters.get(name) if is_varying(parameters.get(name)) else None
         self._constant = None
         if field:
             if self._property is not None:

@@ -28,24 +28,35 @@ class Views:
 
     def arguments(self, volume):
         """The core's arguments, in the CRS of the volume. Any thread."""
-        theirs = QgsCoordinateReferenceSystem.fromWkt(volume.crs_wkt) if volume.crs_wkt else None
-        move = QgsCoordinateTransform()
-        if theirs is not None and theirs.isValid() and self.crs.isValid():
-            move = QgsCoordinateTransform(self.crs, theirs, self.transforms)
+        move = into_volume(self.crs, self.transforms, volume, _LAYER)
         return {
-            "views": [self._moved(rings, move, label) for rings, label in zip(self.areas, self.labels)],
+            "views": [_moved(rings, move, label) for rings, label in zip(self.areas, self.labels)],
             "view_height": self.heights,
             "view_height_to": self.heights_to,
             "names": self.labels,
         }
 
-    def _moved(self, rings, move, label):
+
+def into_volume(crs, transforms, volume, layer):
+    """A function of a point of `layer` and its label: the point in the CRS of the volume. Any thread."""
+    theirs = QgsCoordinateReferenceSystem.fromWkt(volume.crs_wkt) if volume.crs_wkt else None
+    transform = QgsCoordinateTransform()
+    if theirs is not None and theirs.isValid() and crs.isValid():
+        transform = QgsCoordinateTransform(crs, theirs, transforms)
+
+    def move(point, label):
         try:
-            moved = [[move.transform(corner) for corner in ring] for ring in rings]
+            return transform.transform(point)
         except QgsCsException:
-            raise bad_input(_LAYER, tr("{} cannot be brought into the CRS of the volume.").format(label)) from None
-        corners = [[(corner.x(), corner.y()) for corner in ring] for ring in moved]
-        return corners if len(corners[0]) > 1 else corners[0][0]
+            raise bad_input(layer, tr("{} cannot be brought into the CRS of the volume.").format(label)) from None
+
+    return move
+
+
+def _moved(rings, move, label):
+    moved = [[move(corner, label) for corner in ring] for ring in rings]
+    corners = [[(corner.x(), corner.y()) for corner in ring] for ring in moved]
+    return corners if len(corners[0]) > 1 else corners[0][0]
 
 
 def views_block():

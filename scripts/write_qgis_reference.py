@@ -25,7 +25,7 @@ def reference(provider):
     """The whole page."""
     names = (
         "confidenceviewshed", "errorsurfaces", "lineofsightprofile",
-        "builderrorvolume", "volumeviewshed", "subtractobserver", "volumetoraster",
+        "builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster",
     )
     return HEAD + "".join(section(provider.algorithm(name)) for name in names)
 

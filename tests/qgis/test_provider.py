@@ -11,7 +11,7 @@ from qgis.core import (
 )
 
 VISIBILITY = ("confidenceviewshed", "errorsurfaces", "lineofsightprofile")
-VOLUME = ("builderrorvolume", "volumeviewshed", "subtractobserver", "volumetoraster")
+VOLUME = ("builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster")
 ALGORITHMS = VISIBILITY + VOLUME
 ERROR_BLOCK = """VERTICAL_ACCURACY VERTICAL_MEASURE GEOLOGIC_VARIATION HORIZONTAL_ACCURACY HORIZONTAL_MEASURE
     ERROR_RASTER GEOLOGIC_MODEL GEOLOGIC_RANGE GEOLOGIC_RASTER TERRAIN_TYPES TERRAIN_FIELD TERRAIN_TABLE
