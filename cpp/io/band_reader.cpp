@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -21,6 +22,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "io/float_tiles.h"
 
 namespace sightbound {
 
@@ -107,6 +109,7 @@ class Reader {
       : source_(band),
         band_(handle),
         mask_(band.masked ? handle->GetMaskBand() : nullptr),
+        floats_(band.by_blocks ? FloatTiles::of(handle, band.path) : nullptr),
         block_(block_size(*handle)),
         cell_bytes_(static_cast<std::size_t>(GDALGetDataTypeSizeBytes(band.decoder.type))) {}
 
@@ -131,11 +134,16 @@ class Reader {
     for (int by = part.row / block_.rows; by * block_.rows < part.row_end(); ++by) {
       for (int bx = part.col / block_.cols; bx * block_.cols < part.col_end(); ++bx) {
         const Window block{bx * block_.cols, by * block_.rows, block_.cols, block_.rows};
-        if (band_->ReadBlock(bx, by, stored_.data()) != CE_None) return false;
+        if (!read_block(bx, by)) return false;
         if (!decode(intersection(block, part), block, to)) return false;
       }
     }
     return true;
+  }
+
+  bool read_block(int col, int row) {
+    if (floats_ && floats_->read(col, row, reinterpret_cast<float*>(stored_.data()))) return true;
+    return band_->ReadBlock(col, row, stored_.data()) == CE_None;
   }
 
   // `stored_` holds the window `held`; `wanted` of it is decoded.
@@ -164,6 +172,7 @@ class Reader {
   const Band& source_;
   GDALRasterBand* band_;
   GDALRasterBand* mask_;
+  std::unique_ptr<FloatTiles> floats_;  // null: GDAL reads the blocks
   BlockSize block_;
   std::size_t cell_bytes_;
   DecodingCounts counts_;
