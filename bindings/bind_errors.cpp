@@ -43,12 +43,17 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
-void bind_errors(py::module_& m) {
-  cancelled_type = PyErr_NewExceptionWithDoc("sightbound.Cancelled",
-                                             "The job was asked to stop; nothing half-written stays behind.",
-                                             nullptr, nullptr);
-  if (cancelled_type == nullptr) throw py::error_already_set();
-  m.attr("Cancelled") = py::handle(cancelled_type);
+py::handle make_cancelled(py::module_& m) {
+  const py::handle cancelled = PyErr_NewExceptionWithDoc(
+      "sightbound.Cancelled", "The job was asked to stop; nothing half-written stays behind.", nullptr,
+      nullptr);
+  if (!cancelled) throw py::error_already_set();
+  m.attr("Cancelled") = cancelled;
+  return cancelled;
+}
+
+void bind_errors(py::handle cancelled) {
+  cancelled_type = cancelled.inc_ref().ptr();
   py::register_local_exception_translator(translate);
 }
 

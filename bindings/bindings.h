@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One function per concept; each adds its classes and functions to the module sightbound._core. No logic
-// here: what a job means is in cpp/, coercion of arguments and docstrings are in the Python files of
-// sightbound/.
+// One function per concept; each adds its classes and functions to a module: sightbound._core, or, where
+// OpenVDB is needed, sightbound._volume. No logic here: what a job means is in cpp/, coercion of arguments
+// and docstrings are in the Python files of sightbound/.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,7 +10,10 @@ namespace sightbound::python {
 
 namespace py = pybind11;
 
-void bind_errors(py::module_& m);
+// Adds the exception Cancelled.
+py::handle make_cancelled(py::module_& m);
+// From now on what this module's functions throw is translated. Each module needs it.
+void bind_errors(py::handle cancelled);
 void bind_dem(py::module_& m);
 void bind_error_model(py::module_& m);
 void bind_viewshed(py::module_& m);

@@ -16,15 +16,12 @@ PYBIND11_MODULE(_core, m) {
     const GdalVersions versions = gdal_versions();
     return std::pair(versions.compiled, versions.loaded);
   });
-  python::bind_errors(m);
+  python::bind_errors(python::make_cancelled(m));
   python::bind_dem(m);
   python::bind_error_model(m);
   python::bind_viewshed(m);
   python::bind_line_of_sight(m);
   python::bind_error_surfaces(m);
   python::bind_tin(m);
-  python::bind_volume(m);
-  python::bind_hidden_volume(m);
-  python::bind_volume_targets(m);
   python::bind_defaults(m);
 }

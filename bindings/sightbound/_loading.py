@@ -3,23 +3,41 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import sys
+from types import ModuleType
 
-# GDAL brings a hundred libraries. Binding their functions when first called saves a tenth of the time to import.
-_flags = sys.getdlopenflags() if hasattr(os, "RTLD_LAZY") else None
-try:
-    if _flags is not None:
-        sys.setdlopenflags(os.RTLD_LAZY)
+
+
+def _load(name: str) -> ModuleType:
+    """Imports a compiled module. GDAL and OpenVDB bring a hundred libraries: binding their functions when first called
+    saves a tenth of the time."""
+    flags = sys.getdlopenflags() if hasattr(os, "RTLD_LAZY") else None
+    try:
+        if flags is not None:
+            sys.setdlopenflags(os.RTLD_LAZY)
+        return importlib.import_module(f"{__package__}.{name}")
+    except ImportError as error:
+        raise ImportError(
+            f"The compiled part of sightbound cannot be loaded by Python {sys.version.split()[0]} ({error}). "
+            f"Build it with the interpreter that is to use it: cmake -DPython_EXECUTABLE={sys.executable or 'python3'}"
+        ) from error
+    finally:
+        if flags is not None:
+            sys.setdlopenflags(flags)
+
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
     from . import _core as core
-except ImportError as error:
-    raise ImportError(
-        f"The compiled part of sightbound cannot be loaded by Python {sys.version.split()[0]} ({error}). "
-        f"Build it with the interpreter that is to use it: cmake -DPython_EXECUTABLE={sys.executable or 'python3'}"
-    ) from error
-finally:
-    if _flags is not None:
-        sys.setdlopenflags(_flags)
+else:
+    core = _load("_core")
+
+
+def volume_core() -> ModuleType:
+    """The compiled part that knows OpenVDB, loaded when first asked for: it takes as long as all the rest."""
+    return sys.modules.get(f"{__package__}._volume") or _load("_volume")
 
 
 def _release(version: str) -> list[str]:
@@ -45,4 +63,4 @@ def _refuse_other_gdal() -> None:
 
 _refuse_other_gdal()
 
-__all__ = ["core"]
+__all__ = ["core", "volume_core"]

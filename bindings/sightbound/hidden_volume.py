@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections import namedtuple
 
 from . import _arguments as arguments
-from ._loading import core
+from ._loading import core, volume_core
 from .tin import _wrapped as _wrapped_tin
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, NamedTuple
 
+    from . import _volume
     from ._arguments import CreationOptions, FloatArray, Geotransform, Path, Progress
     from .tin import Tin
 
@@ -42,7 +43,7 @@ class HiddenVolume:
 
     __slots__ = ("_core", "_estimate", "_warnings")
 
-    _core: core.HiddenVolume
+    _core: _volume.HiddenVolume
     _estimate: dict[str, Any]
     _warnings: list[str]
 
@@ -57,7 +58,7 @@ class HiddenVolume:
             OSError: the file cannot be read, or is damaged.
             ValueError: it is no hidden volume of Sightbound.
         """
-        return wrapped(core.open_hidden_volume(arguments.path("path", path), progress))
+        return wrapped(volume_core().open_hidden_volume(arguments.path("path", path), progress))
 
     def save(self, path: Path, progress: Progress | None = None) -> None:
         """Writes a .vdb file (grids p and verdict) that open() and every OpenVDB tool reads.
@@ -93,7 +94,7 @@ class HiddenVolume:
         Raises:
             ValueError: no path, one path twice. OSError: a file cannot be written. Cancelled: progress returned False.
         """
-        files = core.HiddenFiles()
+        files = volume_core().HiddenFiles()
         files.height = arguments.path("height", height)
         files.thickness = arguments.path("thickness", thickness)
         files.core_thickness = arguments.path("core_thickness", core_thickness)
@@ -195,7 +196,7 @@ class HiddenVolume:
         return f"<HiddenVolume, {self.lattice['targets']} targets>"
 
 
-def core_hidden(hidden: Any) -> core.HiddenVolume:
+def core_hidden(hidden: Any) -> _volume.HiddenVolume:
     """The compiled side of a hidden volume."""
     if not isinstance(hidden, HiddenVolume):
         raise TypeError(f"hidden must be a sightbound.HiddenVolume; got {type(hidden).__name__}.")
@@ -203,7 +204,7 @@ def core_hidden(hidden: Any) -> core.HiddenVolume:
 
 
 def wrapped(
-    made: core.HiddenVolume, estimate: dict[str, Any] | None = None, warnings: list[str] | None = None
+    made: _volume.HiddenVolume, estimate: dict[str, Any] | None = None, warnings: list[str] | None = None
 ) -> HiddenVolume:
     """The compiled side as what users hold."""
     hidden = HiddenVolume.__new__(HiddenVolume)

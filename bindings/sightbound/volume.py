@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import namedtuple
 
 from . import _arguments as arguments
-from ._loading import core
+from ._loading import core, volume_core
 from .dem import Dem
 from .error_model import ErrorModel, core_model
 from .tin import Tin
@@ -15,6 +15,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, NamedTuple, Union
 
+    from . import _volume
     from ._arguments import Box, CreationOptions, FloatArray, Geotransform, Path, Progress
 
     Terrain = Union[Dem, Tin]
@@ -47,7 +48,7 @@ class ErrorVolume:
 
     __slots__ = ("_core", "_warnings")
 
-    _core: core.ErrorVolume
+    _core: _volume.ErrorVolume
     _warnings: list[str]
 
     def __init__(self) -> None:
@@ -89,7 +90,7 @@ class ErrorVolume:
         """
         prepared = _terrain(terrain, error_model, extent, threads, memory_budget, _first(progress))
         options = _options(voxel, voxel_height, confidence, largest_confidence, threads, memory_budget)
-        return _wrapped(core.build_volume(prepared, options, _second(progress)), prepared.warnings)
+        return _wrapped(volume_core().build_volume(prepared, options, _second(progress)), prepared.warnings)
 
     @staticmethod
     def estimate(
@@ -119,7 +120,7 @@ class ErrorVolume:
             OSError: the file cannot be read, or is damaged.
             ValueError: it is no error volume of Sightbound.
         """
-        return _wrapped(core.open_volume(arguments.path("path", path), progress), [])
+        return _wrapped(volume_core().open_volume(arguments.path("path", path), progress), [])
 
     def save(self, path: Path, progress: Progress | None = None) -> None:
         """Writes a .vdb file (half-float grids k_low and k_high) that open() and every OpenVDB tool reads.
@@ -153,7 +154,7 @@ class ErrorVolume:
             ValueError: no path, one path twice, a confidence as rasters() refuses it. OSError: a file cannot be written.
             Cancelled: progress returned False.
         """
-        files = core.VolumeFiles()
+        files = volume_core().VolumeFiles()
         files.lower = arguments.path("lower", lower)
         files.upper = arguments.path("upper", upper)
         files.thickness = arguments.path("thickness", thickness)
@@ -208,7 +209,7 @@ class ErrorVolume:
         return f"<ErrorVolume, voxels of {self.voxel:g} m>"
 
 
-def core_volume(volume: Any) -> core.ErrorVolume:
+def core_volume(volume: Any) -> _volume.ErrorVolume:
     """The compiled side of the argument `volume`."""
     if not isinstance(volume, ErrorVolume):
         raise TypeError(
@@ -219,14 +220,14 @@ def core_volume(volume: Any) -> core.ErrorVolume:
 
 def _terrain(
     terrain: Any, error_model: Any, extent: Any, threads: Any, memory_budget: Any, progress: Progress | None
-) -> core.VolumeTerrain:
+) -> _volume.VolumeTerrain:
     if isinstance(terrain, Tin):
         if extent is not None:
             raise ValueError("extent is for a Dem; a Tin is taken as a whole.")
-        return core.volume_terrain_of_tin(terrain._core, _model_of_tin(error_model), progress)
+        return volume_core().volume_terrain_of_tin(terrain._core, _model_of_tin(error_model), progress)
     if not isinstance(terrain, Dem):
         raise TypeError(f"terrain must be a sightbound.Dem or sightbound.Tin; got {type(terrain).__name__}.")
-    return core.volume_terrain_of_dem(
+    return volume_core().volume_terrain_of_dem(
         terrain._core,
         core_model(error_model, terrain),
         arguments.extent(extent),
@@ -251,8 +252,8 @@ def _model_of_tin(model: Any) -> core.ErrorModel:
 
 def _options(
     voxel: Any, voxel_height: Any, confidence: Any, largest_confidence: Any, threads: Any, memory_budget: Any
-) -> core.VolumeOptions:
-    options = core.VolumeOptions()
+) -> _volume.VolumeOptions:
+    options = volume_core().VolumeOptions()
     options.voxel_m = _length("voxel", voxel)
     options.voxel_height_m = _length("voxel_height", voxel_height)
     options.confidence = arguments.number("confidence", confidence)
@@ -273,7 +274,7 @@ def _length(name: str, value: Any) -> float:
     return found
 
 
-def _wrapped(made: core.ErrorVolume, warnings: list[str]) -> ErrorVolume:
+def _wrapped(made: _volume.ErrorVolume, warnings: list[str]) -> ErrorVolume:
     volume = ErrorVolume.__new__(ErrorVolume)
     volume._core = made
     volume._warnings = list(warnings)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import namedtuple
 
 from . import _arguments as arguments
-from ._loading import core
+from ._loading import core, volume_core
 from .hidden_volume import HiddenVolume, core_hidden, wrapped
 from .volume import ErrorVolume, core_volume
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any, NamedTuple, Optional, Union
 
+    from . import _volume
     from ._arguments import Numbers, Position, Progress
 
     View = Union[Position, Sequence[Position], Sequence[Sequence[Position]]]
@@ -93,7 +94,7 @@ def volume_viewshed(
         Cancelled: progress returned False.
     """
     job = Job(**locals())
-    return wrapped(*core.volume_viewshed(job.volume, job.views, job.options, progress))
+    return wrapped(*volume_core().volume_viewshed(job.volume, job.views, job.options, progress))
 
 
 def estimate_volume_viewshed(
@@ -123,7 +124,7 @@ def estimate_volume_viewshed(
     The seconds come from some lines timed through the volume. Raises what volume_viewshed() raises.
     """
     job = Job(**locals())
-    return core.estimate_sight(job.volume, job.views, job.options, progress)
+    return volume_core().estimate_sight(job.volume, job.views, job.options, progress)
 
 
 def subtract_observer(
@@ -164,7 +165,7 @@ def subtract_observer(
     for name in ("hidden", "before", "lattice", "height"):
         given.pop(name)
     job = Job(**given)
-    found, gain, estimate, warnings = core.subtract_observer(
+    found, gain, estimate, warnings = volume_core().subtract_observer(
         before, job.volume, job.views, job.options, arguments.number("height", height), progress
     )
     return Subtraction(wrapped(found, estimate, warnings), gain)
@@ -178,7 +179,7 @@ class Job:
     def __init__(self, volume: Any, views: Any, names: Any, progress: Any, **given: Any) -> None:
         self.volume = core_volume(volume)
         self.views = _views(views, given["view_height"], given["view_height_to"], names)
-        options = core.VolumeSightOptions()
+        options = volume_core().VolumeSightOptions()
         options.confidence = arguments.number("confidence", given["confidence"])
         options.refraction = arguments.number("refraction", given["refraction"])
         options.curvature = bool(given["curvature"])
@@ -195,7 +196,7 @@ class Job:
         self.options = options
 
 
-def _views(views: Any, height: Any, height_to: Any, names: Any) -> list[core.ViewVolume]:
+def _views(views: Any, height: Any, height_to: Any, names: Any) -> list[_volume.ViewVolume]:
     outlines = arguments.listed(views)
     if outlines is None or (outlines and arguments.listed(outlines[0]) is None):
         raise ValueError(f"views is {views!r}; it must be a sequence of (x, y) or of polygons. For one place: [(x, y)].")
@@ -205,7 +206,7 @@ def _views(views: Any, height: Any, height_to: Any, names: Any) -> list[core.Vie
     lower = arguments.one_each("view_height", height, count, arguments.number)
     upper = lower if height_to is None else arguments.one_each("view_height_to", height_to, count, arguments.number)
     rows = zip(outlines, lower, upper, arguments.names(names, count))
-    return [core.ViewVolume(_rings(i, one), *rest) for i, (one, *rest) in enumerate(rows, 1)]
+    return [volume_core().ViewVolume(_rings(i, one), *rest) for i, (one, *rest) in enumerate(rows, 1)]
 
 
 def _rings(number: int, view: Any) -> list[list[tuple[float, float]]]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import namedtuple
 
 from . import _arguments as arguments
-from ._loading import core
+from ._loading import core, volume_core
 from .volume_sight import Job
 
 TYPE_CHECKING = False
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from . import _volume
     from ._arguments import CreationOptions, FloatArray, Geotransform, Numbers, Path, Positions, Progress
     from .volume import ErrorVolume
     from .volume_sight import View
@@ -43,7 +44,7 @@ class VolumeLayer:
 
     __slots__ = ("_core",)
 
-    _core: core.VolumeLayer
+    _core: _volume.VolumeLayer
 
     def __init__(self) -> None:
         raise TypeError("Use volume_layer().")
@@ -134,7 +135,7 @@ def volume_layer(
     height = arguments.number("target_height", given.pop("target_height"))
     job = Job(**given)
     layer = VolumeLayer.__new__(VolumeLayer)
-    layer._core = core.volume_layer(job.volume, job.views, height, job.options, progress)
+    layer._core = volume_core().volume_layer(job.volume, job.views, height, job.options, progress)
     return layer
 
 
@@ -179,7 +180,7 @@ def volume_targets(
     heights = arguments.one_each("target_height", given.pop("target_height"), len(places), arguments.number, "target")
     reference = arguments.word("target_height_reference", given.pop("target_height_reference"))
     job = Job(**given)
-    verdict, p, counts, warnings = core.volume_targets(
+    verdict, p, counts, warnings = volume_core().volume_targets(
         job.volume, job.views, places, heights, reference, job.options, progress
     )
     return TargetSight(verdict, p, {**counts, "warnings": warnings, "version": core.__version__})

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sightbound as sb
-from sightbound import _core
+from sightbound import _core, _volume
 
 PACKAGE = Path(sb.__file__).resolve().parent
 
@@ -21,7 +21,7 @@ def python(code):
     return subprocess.run([sys.executable, "-c", start + code], capture_output=True, text=True)
 
 
-def test_numpy_is_not_imported_until_an_array_is_touched(tmp_path):
+def test_numpy_and_openvdb_are_not_loaded_until_they_are_needed(tmp_path):
     dem = sb.viewshed(sb.Dem(np.zeros((9, 9)), (0, 10, 0, 90, 0, -10)), [(45, 45)], error_model=sb.ErrorModel(1, 0, 0))
     dem.write(tmp_path / "dem.tif")
     job = python(f"""
@@ -29,7 +29,7 @@ import sightbound as sb
 dem = sb.read_dem({str(tmp_path / 'dem.tif')!r})
 result = sb.viewshed(dem, [(45, 45)], max_distance=30)
 result.write({str(tmp_path / 'c.tif')!r}, verdict={str(tmp_path / 'v.tif')!r}, count={str(tmp_path / 'n.tif')!r})
-heavy = {{"numpy", "typing", "json", "osgeo", "pathlib"}} & set(sys.modules)
+heavy = {{"numpy", "typing", "json", "osgeo", "pathlib", "sightbound._volume"}} & set(sys.modules)
 print(heavy or "none", result.report["visible_share"] >= 0)
 """)
     assert job.stdout == "none True\n", job.stderr
@@ -68,10 +68,10 @@ def test_public_names():
     assert (PACKAGE / "py.typed").is_file()
 
 
-def stubbed():
-    """name -> attributes (classes) or argument names (functions) of _core.pyi."""
+def stubbed(module):
+    """name -> attributes (classes) or argument names (functions) of the module's .pyi."""
     found = {}
-    for node in ast.parse((PACKAGE / "_core.pyi").read_text()).body:
+    for node in ast.parse((PACKAGE / f"{module.__name__.rpartition('.')[2]}.pyi").read_text()).body:
         if isinstance(node, ast.ClassDef):
             found[node.name] = {child.target.id if isinstance(child, ast.AnnAssign) else child.name for child in node.body
                                 if isinstance(child, (ast.AnnAssign, ast.FunctionDef))} - {"__init__"}
@@ -80,12 +80,13 @@ def stubbed():
     return found
 
 
-def test_stubs_tell_what_is_there():
-    stubs = stubbed()
-    actual = {name for name in vars(_core) if not name.startswith("__")}
+@pytest.mark.parametrize("module", [_core, _volume])
+def test_stubs_tell_what_is_there(module):
+    stubs = stubbed(module)
+    actual = {name for name in vars(module) if not name.startswith("__")}
     assert set(stubs) == actual
     for name, described in stubs.items():
-        thing = getattr(_core, name)
+        thing = getattr(module, name)
         if inspect.isclass(thing):
             assert described == {one for one in vars(thing) if not one.startswith("_")} - ({"args"} if thing is sb.Cancelled else set()), name
         elif described and "arg0" not in thing.__doc__:
