@@ -217,11 +217,11 @@ class BeamWalk {
     return {z, z};
   }
   BeamBlock of_block(int i8, int j8, int k, bool known) {
-    const BlockColumns::Column& column = columns_.of(i8, j8);
-    if (column.is_told(k)) {
-      if (k >= column.end()) return of_tile(background_, known);
-      const int n = k - column.first;
-      return {unpack(columns_.layers(column)[n]), unpack(columns_.largest(column)[n]), known};
+    const BlockColumns::Square& square = columns_.square(i8 >> 2, j8 >> 2);
+    if (square.is_told(k)) {
+      if (k >= square.end()) return of_tile(background_, known);
+      const int slot = BlockColumns::slot(i8, j8);
+      return {unpack(columns_.least(square, k)[slot]), unpack(columns_.largest(square, k)[slot]), known};
     }
     const openvdb::Coord place(i8 * kLeaf, j8 * kLeaf, k);
     if (ratios_.probeConstLeaf(place) != nullptr) return {{-beyond_, -beyond_}, {beyond_, beyond_}, known};

@@ -10,7 +10,7 @@ namespace sightbound {
 
 namespace {
 
-constexpr int kLeaf = 8;
+constexpr int kLeaf = 8, kSquare = kLeaf * BlockColumns::kAcross;
 
 // The smallest low and high of every layer of a leaf, and the largest.
 struct LeafLayers {
@@ -43,6 +43,13 @@ LeafLayers layers_of(const RatioLeaf& leaf) {
   return layers;
 }
 
+LeafLayers layers_of(std::int32_t tile) {
+  LeafLayers layers;
+  layers.least.fill(tile);
+  layers.largest.fill(tile);
+  return layers;
+}
+
 }  // namespace
 
 BlockColumns::BlockColumns(const RatioTree& tree, const Workers& workers) {
@@ -50,33 +57,38 @@ BlockColumns::BlockColumns(const RatioTree& tree, const Workers& workers) {
   tree.getNodes(nodes);
   find_layers(nodes, tree.background());
   mind_large_tiles(tree);
-  lay_out(tree.background());
-  workers.for_each(nodes.size(), [&](std::size_t n) { fill(*nodes[n], tree.background()); });
+  lay_out();
+  workers.for_each(static_cast<std::size_t>(rows_),
+                   [&](std::size_t row) { fill_row(tree, static_cast<int>(row)); });
 }
 
-// From the lowest leaf of each column to its highest leaf or tile.
+// From the lowest leaf of each square to its highest leaf or tile.
 void BlockColumns::find_layers(const std::vector<const RatioNode128*>& nodes, std::int32_t background) {
   if (nodes.empty()) return;
   openvdb::CoordBBox plan;
   for (const RatioNode128* node : nodes) plan.expand(node->origin());
-  first_i8_ = plan.min().x() / kLeaf, first_j8_ = plan.min().y() / kLeaf;
-  cols_ = (plan.max().x() - plan.min().x()) / kLeaf + kAcross128;
-  rows_ = (plan.max().y() - plan.min().y()) / kLeaf + kAcross128;
-  columns_.assign(static_cast<std::size_t>(cols_) * static_cast<std::size_t>(rows_), Column{});
+  first_i32_ = plan.min().x() / kSquare, first_j32_ = plan.min().y() / kSquare;
+  cols_ = (plan.max().x() - plan.min().x()) / kSquare + kSquares;
+  rows_ = (plan.max().y() - plan.min().y()) / kSquare + kSquares;
+  const std::size_t count = static_cast<std::size_t>(cols_) * static_cast<std::size_t>(rows_);
+  squares_.assign(count, Square{});
 
-  std::vector<const RatioNode128*> upwards = nodes;
-  std::sort(upwards.begin(), upwards.end(),
-            [](const auto* a, const auto* b) { return a->origin().z() < b->origin().z(); });
-  for (const RatioNode128* node : upwards) {
+  std::vector<int> lowest(count, kIrregular), highest(count, kEmpty);
+  for (const RatioNode128* node : nodes) {
     for (openvdb::Index n = 0; n < RatioNode128::NUM_VALUES; ++n) {
       const bool is_leaf = node->isChildMaskOn(n);
       if (!is_leaf && node->getTable()[n].getValue() == background) continue;
       const openvdb::Coord origin = node->offsetToGlobalCoord(n);
-      Column& column = at(origin.x() >> 3, origin.y() >> 3);
-      const bool begun = column.first != kEmpty && column.first != kIrregular;
-      if (!begun) column.first = is_leaf ? origin.z() : kIrregular;
-      if (begun || is_leaf) column.layers = origin.z() + kLeaf - column.first;
+      const auto at = static_cast<std::size_t>(((origin.y() >> 5) - first_j32_) * cols_ +
+                                               ((origin.x() >> 5) - first_i32_));
+      if (is_leaf) lowest[at] = std::min(lowest[at], origin.z());
+      highest[at] = std::max(highest[at], origin.z() + kLeaf);
     }
+  }
+  for (std::size_t n = 0; n < count; ++n) {
+    if (highest[n] == kEmpty) continue;
+    squares_[n].first = lowest[n];  // kIrregular where there are tiles alone
+    if (lowest[n] != kIrregular) squares_[n].layers = highest[n] - lowest[n];
   }
 }
 
@@ -88,58 +100,51 @@ void BlockColumns::mind_large_tiles(const RatioTree& tree) {
     if (*tile == tree.background()) continue;
     openvdb::CoordBBox box;
     tile.getBoundingBox(box);
-    const int i0 = box.min().x() / kLeaf - first_i8_, i1 = (box.max().x() + 1) / kLeaf - first_i8_;
-    const int j0 = box.min().y() / kLeaf - first_j8_, j1 = (box.max().y() + 1) / kLeaf - first_j8_;
+    const int i0 = box.min().x() / kSquare - first_i32_, i1 = (box.max().x() + 1) / kSquare - first_i32_;
+    const int j0 = box.min().y() / kSquare - first_j32_, j1 = (box.max().y() + 1) / kSquare - first_j32_;
     if (i0 < 0 || j0 < 0 || i1 > cols_ || j1 > rows_) beyond_.first = kIrregular;
     for (int j = std::max(j0, 0); j < std::min(j1, rows_); ++j) {
       for (int i = std::max(i0, 0); i < std::min(i1, cols_); ++i) {
-        Column& column = at(first_i8_ + i, first_j8_ + j);
-        if (column.first == kEmpty || column.first <= box.max().z()) column = {kIrregular, 0, 0};
+        Square& square = squares_[static_cast<std::size_t>(j * cols_ + i)];
+        if (square.first == kEmpty || square.end() <= box.max().z()) square = {kIrregular, 0, 0};
       }
     }
   }
 }
 
-void BlockColumns::lay_out(std::int32_t background) {
+void BlockColumns::lay_out() {
   std::size_t layers = 0;
-  for (Column& column : columns_) {
-    column.offset = static_cast<std::uint32_t>(layers);
-    layers += static_cast<std::size_t>(column.layers);
+  const int wide = cols_ / kSquares;
+  ends_128_.assign(squares_.size() / (kSquares * kSquares), kEmpty);
+  for (std::size_t n = 0; n < squares_.size(); ++n) {
+    Square& square = squares_[n];
+    square.offset = static_cast<std::uint32_t>(layers);
+    layers += static_cast<std::size_t>(square.layers);
+    const int i = static_cast<int>(n) % cols_, j = static_cast<int>(n) / cols_;
+    int& end = ends_128_[static_cast<std::size_t>(j / kSquares * wide + i / kSquares)];
+    end = std::max(end, square.end());
   }
-  layers_.assign(layers, background);
-  largest_.assign(layers, background);
-  ends_32_ = ends_of(kAcross32);
-  ends_128_ = ends_of(kAcross128);
+  for (Grid<std::int32_t>* values : {&least_, &largest_})
+    *values = Grid<std::int32_t>(static_cast<int>(layers), kColumns);
 }
 
-// The highest end in every square of `across` columns of 8.
-std::vector<int> BlockColumns::ends_of(int across) const {
-  const auto wide = static_cast<std::size_t>(cols_ / across), cols = static_cast<std::size_t>(cols_);
-  std::vector<int> ends(wide * static_cast<std::size_t>(rows_ / across), kEmpty);
-  for (std::size_t n = 0; n < columns_.size(); ++n) {
-    const std::size_t i = n % cols / static_cast<std::size_t>(across),
-                      j = n / cols / static_cast<std::size_t>(across);
-    ends[j * wide + i] = std::max(ends[j * wide + i], columns_[n].end());
-  }
-  return ends;
-}
-
-void BlockColumns::fill(const RatioNode128& node, std::int32_t background) {
-  for (openvdb::Index n = 0; n < RatioNode128::NUM_VALUES; ++n) {
-    const bool is_leaf = node.isChildMaskOn(n);
-    if (!is_leaf && node.getTable()[n].getValue() == background) continue;
-    const openvdb::Coord origin = node.offsetToGlobalCoord(n);
-    const Column& column = at(origin.x() >> 3, origin.y() >> 3);
-    if (origin.z() < column.first) continue;
-    const std::size_t at = column.offset + static_cast<std::size_t>(origin.z() - column.first);
-    if (is_leaf) {
-      const LeafLayers layers = layers_of(*node.getTable()[n].getChild());
-      std::copy(layers.least.begin(), layers.least.end(), layers_.data() + at);
-      std::copy(layers.largest.begin(), layers.largest.end(), largest_.data() + at);
-    } else {
-      const std::int32_t value = node.getTable()[n].getValue();
-      std::fill_n(layers_.data() + at, kLeaf, value);
-      std::fill_n(largest_.data() + at, kLeaf, value);
+// One row of squares.
+void BlockColumns::fill_row(const RatioTree& tree, int row) {
+  const openvdb::tree::ValueAccessor<const RatioTree, false> access(tree);
+  for (int col = 0; col < cols_; ++col) {
+    const Square& square = squares_[static_cast<std::size_t>(row * cols_ + col)];
+    for (int slot = 0; slot < kColumns; ++slot) {
+      const int i = (first_i32_ + col) * kSquare + slot % kAcross * kLeaf,
+                j = (first_j32_ + row) * kSquare + slot / kAcross * kLeaf;
+      for (int k = square.first; k < square.end(); k += kLeaf) {
+        const RatioLeaf* leaf = access.probeConstLeaf({i, j, k});
+        const LeafLayers layers = leaf != nullptr ? layers_of(*leaf) : layers_of(access.getValue({i, j, k}));
+        for (std::size_t n = 0; n < kLeaf; ++n) {
+          const int at = static_cast<int>(square.offset) + k - square.first + static_cast<int>(n);
+          least_.at(at, slot) = layers.least[n];
+          largest_.at(at, slot) = layers.largest[n];
+        }
+      }
     }
   }
 }

@@ -178,21 +178,28 @@ class RayWalk {
   }
 
   // Columns of 32: no nodes of the tree, but most of those near the ground lie below a line that clears it.
+  // What is told of the next one is fetched while this one is walked: lines wait for memory most of all.
   template <class Passed>
   bool quarters(double t0, double t1, bool some_unknown, Passed& passed) {
     Columns<kQuarter> columns(path_, t0);
-    for (double t = t0; t < t1; columns.step()) {
+    double z = path_.height(t0);
+    for (double t = t0; t < t1;) {
       const double end = std::min(columns.end(), t1);
+      const BlockColumns::Square& square = columns_.square(columns.i(), columns.j());
+      columns.step();
       if (end <= t) continue;
-      const bool above = !some_unknown && path_.piece(t, end).low > columns_.end_32(columns.i(), columns.j());
-      if (!(above ? passed.voxel(background_, false, t) : leaves(t, end, some_unknown, passed))) return false;
-      t = end;
+      const double z_end = path_.height(end);
+      columns_.prefetch(columns_.square(columns.i(), columns.j()), layer(z_end));
+      const bool above = !some_unknown && path_.piece(t, z, end, z_end).low > square.end();
+      if (!(above ? passed.voxel(background_, false, t) : leaves(t, end, some_unknown, square, passed)))
+        return false;
+      t = end, z = z_end;
     }
     return true;
   }
 
   template <class Passed>
-  bool leaves(double t0, double t1, bool may_be_unknown, Passed& passed) {
+  bool leaves(double t0, double t1, bool may_be_unknown, const BlockColumns::Square& square, Passed& passed) {
     Columns<kLeaf> columns(path_, t0);
     double z = path_.height(t0);
     for (double t = t0; t < t1; columns.step()) {
@@ -203,7 +210,7 @@ class RayWalk {
       const PlanState doubt = may_be_unknown ? unknown_->of_8(columns.i(), columns.j()) : PlanState::kNone;
       if (doubt == PlanState::kAll && !passed.unknown(t)) return false;
       const bool some_unknown = doubt == PlanState::kSome;
-      if (some_unknown || may_matter(piece, columns, passed)) {
+      if (some_unknown || may_matter(piece, columns, square, passed)) {
         if (!voxels(piece, columns, some_unknown, passed)) return false;
       } else if (!passed.voxel(background_, false, t)) {
         return false;
@@ -215,15 +222,15 @@ class RayWalk {
 
   // Could anything in the layers of a piece change what has been passed?
   template <class Passed>
-  bool may_matter(const Piece& piece, const Columns<kLeaf>& leaf_column, const Passed& passed) const {
-    const BlockColumns::Column& column = columns_.of(leaf_column.i(), leaf_column.j());
+  bool may_matter(const Piece& piece, const Columns<kLeaf>& leaf_column, const BlockColumns::Square& square,
+                  const Passed& passed) const {
     const int from = layer(piece.low);
-    if (!column.is_told(from)) return true;
-    const int to = std::min(layer(piece.high), column.end() - 1);
-    const std::int32_t* least = columns_.layers(column);
-    for (int k = from; k <= to; ++k) {
-      const std::int32_t packed = least[k - column.first];
-      if (packed != background_ && passed.may_matter(packed)) return true;
+    if (!square.is_told(from)) return true;
+    const int to = std::min(layer(piece.high), square.end() - 1);
+    const int slot = BlockColumns::slot(leaf_column.i(), leaf_column.j());
+    const std::int32_t* least = columns_.least(square, from) + slot;
+    for (int k = from; k <= to; ++k, least += BlockColumns::kColumns) {
+      if (*least != background_ && passed.may_matter(*least)) return true;
     }
     return false;
   }

@@ -6,7 +6,7 @@
 // - above the terrain or within it - the column is crossed in one step, and so is a leaf none of whose layers
 // passed could change the answer; what is left is walked voxel by voxel.
 // A line passes a voxel when the two meet; places on a face between two voxels belong to either one.
-// Cost: a few microseconds for a line of kilometres; memory of VolumeRays: some 100 bytes per 64 voxel
+// Cost: a few microseconds for a line of kilometres; memory of VolumeRays: some 130 bytes per 64 voxel
 // columns.
 #pragma once
 
