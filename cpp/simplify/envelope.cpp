@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//   z        height of the moving vertex p
+//   d        original height less what the new surface would have with p at the height of a known vertex
+//   w        weight of p at the place: the new height changes by w for each metre of z
+//   d - E <= w (z - known) <= d + E
+#include "simplify/envelope.h"
+
+namespace sightbound {
+
+Envelope::Envelope(const Original& original) : original_(original), margin_(2 * original.rounding()) {}
+
+HeightInterval Envelope::heights_for(const EdgeStar& star, const Point& p) const {
+  return original_.varying() ? find<true>(star, p) : find<false>(star, p);
+}
+
+template <bool kVarying>
+HeightInterval Envelope::find(const EdgeStar& star, const Point& p) const {
+  const Original::Local here = original_.under<kVarying>(p);
+  HeightInterval z{here.height - here.tolerance + margin_, here.height + here.tolerance - margin_};
+  for (int i = 0; i < star.sides() && !z.empty(); ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    narrow_inside<kVarying>(star.at[n], star.at[n + 1], p, z);
+  }
+  for (int i = 0; i < star.size && !z.empty(); ++i) {
+    narrow_along<kVarying>(star.at[static_cast<std::size_t>(i)], p, z);
+  }
+  return z;
+}
+
+// The edge from v, which stays, to p. A NaN narrows nothing.
+template <bool kVarying>
+void Envelope::narrow_along(const Point& v, const Point& p, HeightInterval& z) const {
+  double low = z.low - v.z, high = z.high - v.z;
+  original_.for_crossings<kVarying>(v, p, [&](const Original::Local& here, double t) {
+    const double d = here.height - v.z, allowed = here.tolerance - margin_;
+    if (d - allowed > t * low) low = (d - allowed) / t;
+    if (d + allowed < t * high) high = (d + allowed) / t;
+  });
+  z = {low + v.z, high + v.z};
+}
+
+// Samples in the triangle a, b, p, its edge a b excepted. At a sample s: e = area (a, b, s) and f = area (p,
+// a, s), doubled; e / area is the weight of p, f / area that of b. All three are exact.
+template <bool kVarying>
+void Envelope::narrow_inside(const Point& a, const Point& b, const Point& p, HeightInterval& z) const {
+  const double area = area2(a, b, p), rise = (b.z - a.z) / area;
+  const double ex = a.y - b.y, ey = b.x - a.x, fx = p.y - a.y, fy = a.x - p.x;
+  double low = (z.low - a.z) / area, high = (z.high - a.z) / area;  // per unit of e
+  Original::for_samples(a, b, p, [&](int row, int begin, int end) {
+    const float* height = original_.heights(row);
+    const float* tolerance = kVarying ? original_.tolerances(row) : nullptr;
+    const double e_row = ey * (row - a.y), f_row = fy * (row - a.y);
+    for (int x = begin; x < end; ++x) {
+      const double e = e_row + ex * (x - a.x), f = f_row + fx * (x - a.x);
+      if (e <= 0) continue;
+      const double d = height[x] - a.z - rise * f;
+      const double allowed = (kVarying ? tolerance[x] : original_.constant()) - margin_;
+      if (d - allowed > e * low) low = (d - allowed) / e;
+      if (d + allowed < e * high) high = (d + allowed) / e;
+    }
+    return low <= high;
+  });
+  z = {a.z + low * area, a.z + high * area};
+}
+
+namespace {
+
+template <bool kVarying>
+Deviation largest(const Original& original, const std::array<Point, 3>& corner) {
+  Deviation found;
+  const auto add = [&](const Original::Local& here, double height) {
+    // The envelope was shrunk by the rounding: within it, nothing exceeds the tolerance.
+    double off = std::abs(height - here.height);
+    const bool within = off <= (here.tolerance > 0 ? here.tolerance : original.rounding());
+    off += original.rounding();
+    if (within) off = std::min(off, here.tolerance);
+    found.metres = std::max(found.metres, off);
+    if (off > found.ratio * here.tolerance) found.ratio = off / here.tolerance;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point &a = corner[i], &b = corner[(i + 1) % 3];
+    add(original.under<kVarying>(a), a.z);
+    original.for_crossings<kVarying>(
+        a, b, [&](const Original::Local& here, double t) { add(here, a.z + t * (b.z - a.z)); });
+  }
+  const auto& [a, b, c] = corner;
+  const double area = area2(a, b, c);
+  Original::for_samples(a, b, c, [&](int row, int begin, int end) {
+    for (int x = begin; x < end; ++x) {
+      const Point s{static_cast<double>(x), static_cast<double>(row), 0};
+      const double at_b = area2(a, s, c) / area, at_c = area2(a, b, s) / area;
+      add(original.between<kVarying>(row, x, row, x, 0), a.z + at_b * (b.z - a.z) + at_c * (c.z - a.z));
+    }
+    return true;
+  });
+  return found;
+}
+
+}  // namespace
+
+Deviation deviation_of(const Original& original, const Point& a, const Point& b, const Point& c) {
+  return original.varying() ? largest<true>(original, {a, b, c}) : largest<false>(original, {a, b, c});
+}
+
+}  // namespace sightbound

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The original surface with the tolerance at each place, and the corners of its overlay with new triangles.
+//
+// Columns and rows are coordinates; the original is linear on triangles NW, NE, SE and NW, SE, SW of each
+// square of samples, and so is the tolerance.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "simplify/edge_star.h"
+#include "terrain/grid.h"
+
+namespace sightbound {
+
+class Original {
+ public:
+  struct Local {
+    double height, tolerance;
+  };
+
+  // `tolerance` of each sample, or empty for the constant. Both grids must outlive this.
+  Original(const Grid<float>& heights, const Grid<float>& tolerance, double constant);
+
+  bool varying() const { return !tolerance_.empty(); }
+  double constant() const { return constant_; }
+  const float* heights(int row) const { return heights_.row(row); }
+  const float* tolerances(int row) const { return tolerance_.row(row); }
+  // What rounding may add to a deviation, places as written in a CRS included, in metres.
+  double rounding() const { return rounding_; }
+
+  // On the edge from one sample to another.
+  template <bool kVarying>
+  Local between(int r0, int c0, int r1, int c1, double part) const {
+    const double h0 = heights_.at(r0, c0), h1 = heights_.at(r1, c1);
+    Local found{h0 + part * (h1 - h0), constant_};
+    if constexpr (kVarying) {
+      const double e0 = tolerance_.at(r0, c0), e1 = tolerance_.at(r1, c1);
+      found.tolerance = e0 + part * (e1 - e0);
+    }
+    return found;
+  }
+  // Anywhere in the footprint: samples that do not matter may be nodata.
+  template <bool kVarying>
+  Local under(const Point& p) const;
+
+  // f(local, t) where the line from a to b crosses columns, rows and diagonals, t between 0 at a and 1 at b.
+  // Along the outline a crossing at a sample may be rounded towards nodata and be NaN: such samples are on
+  // the line, and for_samples() has them.
+  template <bool kVarying, class F>
+  void for_crossings(const Point& a, const Point& b, const F& f) const;
+
+  // f(row, begin, end) for the samples in the closed triangle, row by row, columns [begin, end).
+  template <class F>
+  static void for_samples(const Point& a, const Point& b, const Point& c, const F& f);
+
+ private:
+  // Samples this far outside a triangle are counted as in it: none on its edges is lost to rounding.
+  static constexpr double kSampleReach = 0x1p-30;  // cells
+  static double whole_above(double x) { return std::floor(x) + 1; }
+
+  const Grid<float>& heights_;
+  const Grid<float>& tolerance_;
+  double constant_, rounding_;
+};
+
+template <bool kVarying>
+Original::Local Original::under(const Point& p) const {
+  const int c = static_cast<int>(p.x), r = static_cast<int>(p.y);
+  const double u = p.x - c, v = p.y - r;
+  if (u == 0 && v == 0) return between<kVarying>(r, c, r, c, 0);
+  if (u == 0) return between<kVarying>(r, c, r + 1, c, v);
+  if (v == 0) return between<kVarying>(r, c, r, c + 1, u);
+  if (u == v) return between<kVarying>(r, c, r + 1, c + 1, u);
+  const double least = std::min(u, v), most = std::max(u, v);
+  const Local nw = between<kVarying>(r, c, r, c, 0), se = between<kVarying>(r + 1, c + 1, r + 1, c + 1, 0);
+  const Local side =
+      u > v ? between<kVarying>(r, c + 1, r, c + 1, 0) : between<kVarying>(r + 1, c, r + 1, c, 0);
+  const auto mix = [&](double at_nw, double at_side, double at_se) {
+    return (1 - most) * at_nw + (most - least) * at_side + least * at_se;
+  };
+  return {mix(nw.height, side.height, se.height), mix(nw.tolerance, side.tolerance, se.tolerance)};
+}
+
+template <bool kVarying, class F>
+void Original::for_crossings(const Point& a, const Point& b, const F& f) const {
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  const int last_row = heights_.rows() - 2, last_col = heights_.cols() - 2;
+  if (dx != 0) {
+    const double step = 1 / dx;
+    for (double x = whole_above(std::min(a.x, b.x)), end = std::max(a.x, b.x); x < end; ++x) {
+      const double t = (x - a.x) * step, y = a.y + t * dy;
+      const int c = static_cast<int>(x), r = std::min(static_cast<int>(y), last_row);
+      f(between<kVarying>(r, c, r + 1, c, y - r), t);
+    }
+  }
+  if (dy != 0) {
+    const double step = 1 / dy;
+    for (double y = whole_above(std::min(a.y, b.y)), end = std::max(a.y, b.y); y < end; ++y) {
+      const double t = (y - a.y) * step, x = a.x + t * dx;
+      const int r = static_cast<int>(y), c = std::min(static_cast<int>(x), last_col);
+      f(between<kVarying>(r, c, r, c + 1, x - c), t);
+    }
+  }
+  const double before = a.y - a.x, after = b.y - b.x;  // of diagonals: row less column
+  if (before != after) {
+    const double step = 1 / (after - before);
+    for (double k = whole_above(std::min(before, after)), end = std::max(before, after); k < end; ++k) {
+      const double t = (k - before) * step, x = a.x + t * dx;
+      const int down = static_cast<int>(k);
+      const int c = std::clamp(static_cast<int>(x), std::max(0, -down), std::min(last_col, last_row - down));
+      f(between<kVarying>(c + down, c, c + down + 1, c + 1, x - c), t);
+    }
+  }
+}
+
+template <class F>
+void Original::for_samples(const Point& a, const Point& b, const Point& c, const F& f) {
+  const Point *top = &a, *middle = &b, *bottom = &c;
+  if (middle->y < top->y) std::swap(middle, top);
+  if (bottom->y < middle->y) std::swap(bottom, middle);
+  if (middle->y < top->y) std::swap(middle, top);
+  const double first = std::ceil(top->y);
+  if (first > bottom->y) return;
+  const auto slope = [](const Point& s, const Point& t) {
+    return t.y > s.y ? (t.x - s.x) / (t.y - s.y) : 0.0;
+  };
+  const double along = slope(*top, *bottom), upper = slope(*top, *middle), lower = slope(*middle, *bottom);
+  for (double y = first; y <= bottom->y; ++y) {
+    const double one = top->x + (y - top->y) * along;
+    const double other = y < middle->y ? top->x + (y - top->y) * upper : middle->x + (y - middle->y) * lower;
+    const int begin = static_cast<int>(std::ceil(std::min(one, other) - kSampleReach));
+    const int end = static_cast<int>(std::floor(std::max(one, other) + kSampleReach)) + 1;
+    if (begin < end && !f(static_cast<int>(y), begin, end)) return;
+  }
+}
+
+}  // namespace sightbound

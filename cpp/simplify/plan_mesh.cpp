@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/plan_mesh.h"
+
+#include <cmath>
+
+namespace sightbound {
+
+PlanMesh::PlanMesh(const Grid<float>& heights) {
+  const int rows = heights.rows(), cols = heights.cols();
+  const auto there = [&](int r, int c) { return !std::isnan(heights.at(r, c)); };
+  std::vector<std::int32_t> number(heights.size(), kNone);
+  const auto vertex_at = [&](int r, int c) {
+    std::int32_t& n =
+        number[static_cast<std::size_t>(r) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(c)];
+    if (n == kNone) {
+      n = static_cast<std::int32_t>(z_.size());
+      x_.push_back(c * kStepsPerCell);
+      y_.push_back(r * kStepsPerCell);
+      z_.push_back(heights.at(r, c));
+    }
+    return n;
+  };
+  // A square's triangles: NW, NE, SE and NW, SE, SW. The lower ones of the row above wait for their
+  // neighbours.
+  std::vector<std::int32_t> above(static_cast<std::size_t>(cols), kNone);
+  for (int r = 0; r + 1 < rows; ++r) {
+    std::int32_t left = kNone;  // the upper triangle of the square to the left
+    for (int c = 0; c + 1 < cols; ++c) {
+      const bool ends = there(r, c) && there(r + 1, c + 1);
+      const auto add = [&](int r1, int c1, int r2, int c2) {
+        const auto corner = static_cast<std::int32_t>(vertex_.size());
+        for (const std::int32_t v : {vertex_at(r, c), vertex_at(r1, c1), vertex_at(r2, c2)}) {
+          vertex_.push_back(v);
+          opposite_.push_back(kNone);
+        }
+        return corner;
+      };
+      std::int32_t upper = kNone, lower = kNone;
+      if (ends && there(r, c + 1)) upper = add(r, c + 1, r + 1, c + 1);
+      if (ends && there(r + 1, c)) lower = add(r + 1, c + 1, r + 1, c);
+      std::int32_t& over = above[at(c)];
+      if (upper != kNone && lower != kNone) join(upper + 1, lower + 2);
+      if (upper != kNone && over != kNone) join(upper + 2, over);
+      if (lower != kNone && left != kNone) join(left, lower + 1);
+      left = upper;
+      over = lower;
+    }
+  }
+  corner_.assign(z_.size(), kNone);
+  for (std::size_t c = vertex_.size(); c-- > 0;) corner_[at(vertex_[c])] = static_cast<std::int32_t>(c);
+  kind_.assign(z_.size(), VertexKind::kInside);
+  find_kinds();
+  split_touching();
+}
+
+std::size_t PlanMesh::count_faces() const {
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < vertex_.size(); c += 3) count += vertex_[c] != kNone ? 1 : 0;
+  return count;
+}
+
+std::int32_t PlanMesh::twin_of(std::int32_t vertex) const {
+  return vertex < first_twin_ ? vertex : twins_[at(vertex - first_twin_)];
+}
+
+std::int32_t PlanMesh::first_corner(std::int32_t vertex) const {
+  const std::int32_t start = corner_of(vertex);
+  for (std::int32_t corner = start;;) {
+    const std::int32_t before = clockwise(corner);
+    if (before == kNone) return corner;
+    if (before == start) return start;
+    corner = before;
+  }
+}
+
+std::int32_t PlanMesh::corner_towards(std::int32_t a, std::int32_t b) const {
+  const std::int32_t start = first_corner(a);
+  std::int32_t corner = start;
+  do {
+    if (vertex(next(corner)) == b) return corner;
+    corner = counterclockwise(corner);
+  } while (corner != kNone && corner != start);
+  return kNone;
+}
+
+void PlanMesh::collapse(std::int32_t corner, std::int32_t kept) {
+  const std::int32_t gone = vertex(corner) == kept ? vertex(next(corner)) : vertex(corner);
+  const std::int32_t left = previous(corner),
+                     right = opposite(previous(corner));  // right: apex of the other triangle
+  const std::int32_t first = first_corner(gone);
+  for (std::int32_t c = first;;) {
+    const std::int32_t after = counterclockwise(c);
+    vertex_[at(c)] = kept;
+    if (after == kNone || after == first) break;
+    c = after;
+  }
+  corner_[at(gone)] = kNone;
+  remove_triangle(left);
+  if (right != kNone) remove_triangle(right);
+}
+
+// The triangle's edge opposite to `apex` has become a point: its two other edges become one.
+void PlanMesh::remove_triangle(std::int32_t apex) {
+  const std::int32_t tip = vertex(apex), kept = vertex(next(apex));
+  const std::int32_t one = opposite(next(apex)), other = opposite(previous(apex));
+  if (one != kNone) opposite_[at(one)] = other;
+  if (other != kNone) opposite_[at(other)] = one;
+  // Across the edge from tip to kept, seen from `one` and `other`.
+  const std::int32_t beside = one != kNone ? one : other;
+  const bool turned = vertex(next(beside)) == tip;
+  corner_[at(tip)] = turned ? next(beside) : previous(beside);
+  corner_[at(kept)] = turned ? previous(beside) : next(beside);
+  for (const std::int32_t c : {apex, next(apex), previous(apex)}) {
+    vertex_[at(c)] = opposite_[at(c)] = kNone;
+  }
+}
+
+void PlanMesh::join(std::int32_t a, std::int32_t b) {
+  opposite_[at(a)] = b;
+  opposite_[at(b)] = a;
+}
+
+// One that ends a straight piece of the outline is a corner.
+void PlanMesh::find_kinds() {
+  for (std::int32_t v = 0; at(v) < z_.size(); ++v) {
+    const std::int32_t first = first_corner(v);
+    if (!on_outline(first)) continue;
+    std::int32_t last = first;
+    for (std::int32_t c = first; c != kNone; c = counterclockwise(c)) last = c;
+    const std::int32_t a = vertex(next(first)), b = vertex(previous(last));
+    const double ax = x(a) - x(v), ay = y(a) - y(v), bx = x(b) - x(v), by = y(b) - y(v);
+    const bool straight = ax * by - ay * bx == 0 && ax * bx + ay * by < 0;
+    kind_[at(v)] = straight ? VertexKind::kOutline : VertexKind::kCorner;
+  }
+}
+
+// A sample of several fans of triangles becomes a vertex of each, and none of them moves.
+void PlanMesh::split_touching() {
+  std::vector<std::uint8_t> corners(z_.size(), 0);
+  for (const std::int32_t v : vertex_) ++corners[at(v)];
+  const auto for_fan = [&](std::int32_t vertex, const auto& f) {
+    const std::int32_t first = first_corner(vertex);
+    std::int32_t c = first;
+    do {
+      const std::int32_t after = counterclockwise(c);
+      f(c);
+      c = after;
+    } while (c != kNone && c != first);
+  };
+  const std::size_t samples = z_.size();
+  first_twin_ = static_cast<std::int32_t>(samples);
+  for (std::size_t v = 0; v < samples; ++v) {
+    for_fan(static_cast<std::int32_t>(v), [&](std::int32_t) { --corners[v]; });
+  }
+  for (std::size_t c = 0; c < vertex_.size(); ++c) {
+    const std::int32_t v = vertex_[c];
+    if (at(v) >= samples || corners[at(v)] == 0) continue;
+    bool of_first_fan = false;
+    for_fan(v, [&](std::int32_t k) { of_first_fan |= k == static_cast<std::int32_t>(c); });
+    if (of_first_fan) continue;
+    const auto twin = static_cast<std::int32_t>(z_.size());
+    x_.push_back(x_[at(v)]), y_.push_back(y_[at(v)]), z_.push_back(z_[at(v)]);
+    kind_.push_back(VertexKind::kFixed);
+    twins_.push_back(v);
+    corner_.push_back(static_cast<std::int32_t>(c));
+    for_fan(twin, [&](std::int32_t k) { vertex_[at(k)] = twin; });
+    kind_[at(v)] = VertexKind::kFixed;
+  }
+}
+
+}  // namespace sightbound

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/simplify.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/memory_budget.h"
+#include "base/number_text.h"
+#include "base/parallel.h"
+#include "simplify/decimation.h"
+#include "simplify/envelope.h"
+
+namespace sightbound {
+
+namespace {
+
+constexpr std::size_t kBytesPerSample = 130;  // mesh 72, its state 13, tiles 12, and the result's attribute
+
+void check(const DemTerrain& terrain, const SimplifyOptions& options) {
+  const Grid<float>& z = terrain.heights;
+  if (z.rows() < 2 || z.cols() < 2) {
+    throw InvalidInput("The DEM has " + std::to_string(z.rows()) + " x " + std::to_string(z.cols()) +
+                       " samples; a surface needs 2 x 2 at least.");
+  }
+  if (z.rows() > kMostCells || z.cols() > kMostCells) {
+    throw InvalidInput("The DEM has " + std::to_string(z.rows()) + " x " + std::to_string(z.cols()) +
+                       " samples, more than " + std::to_string(kMostCells) + " a side; give a part of it.");
+  }
+  const auto check_value = [](double tolerance) {
+    if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
+      throw InvalidInput("tolerance is " + number_text(tolerance) + "; give metres, 0 or more.");
+    }
+  };
+  const auto check_size = [&](int rows, int cols, const std::string& name) {
+    if (rows == z.rows() && cols == z.cols()) return;
+    throw InvalidInput(name + " has " + std::to_string(rows) + " x " + std::to_string(cols) +
+                       " values, the DEM " + std::to_string(z.rows()) + " x " + std::to_string(z.cols()) +
+                       "; give one for each sample.");
+  };
+  if (options.tolerance.empty()) {
+    check_value(options.tolerance_m);
+  } else {
+    check_size(options.tolerance.rows(), options.tolerance.cols(), "tolerance");
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      if (!std::isnan(z.values()[i])) check_value(options.tolerance.values()[i]);
+    }
+  }
+  if (!options.keep.empty()) check_size(options.keep.rows(), options.keep.cols(), "keep");
+  if (options.target_faces < 0) {
+    throw InvalidInput("target_faces is " + std::to_string(options.target_faces) +
+                       "; give 0 (no target) or more.");
+  }
+}
+
+// Samples that have to stay.
+void fix(PlanMesh& mesh, const SimplifyOptions& options) {
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(mesh.vertices()); ++v) {
+    const int r = mesh.step_y(v) / kStepsPerCell, c = mesh.step_x(v) / kStepsPerCell;
+    const bool kept = !options.keep.empty() && options.keep.at(r, c) != 0;
+    if (kept || (options.keep_border && mesh.kind(v) != VertexKind::kInside))
+      mesh.set_kind(v, VertexKind::kFixed);
+  }
+}
+
+void decimate(PlanMesh& mesh, const Original& original, std::size_t faces_to_lose, const Workers& workers,
+              Progress& progress) {
+  const Envelope envelope(original);
+  Decimation decimation(mesh, envelope);
+  for (const PassPlan& plan : pass_plans(faces_to_lose)) decimation.pass(plan, workers, progress);
+}
+
+float rounded_up(double value) {
+  const auto near = static_cast<float>(value);
+  return near < value ? std::nextafter(near, std::numeric_limits<float>::infinity()) : near;
+}
+
+Point place_of(const PlanMesh& mesh, std::int32_t v) { return {mesh.x(v), mesh.y(v), mesh.z(v)}; }
+
+// What the mesh has become, with the largest deviation on each face.
+void write(const PlanMesh& mesh, const DemTerrain& terrain, const Original& original, SimplifiedTin& result) {
+  Tin& tin = result.tin;
+  const Geotransform& map = terrain.geotransform;
+  tin.crs_wkt = terrain.crs_wkt;
+  tin.metres_per_unit = terrain.metres_per_unit;
+  const Xy middle = map.of_sample(terrain.heights.cols() / 2.0, terrain.heights.rows() / 2.0);
+  tin.origin = {std::round(middle.x), std::round(middle.y), 0};
+  std::vector<std::int32_t> number(mesh.vertices(), PlanMesh::kNone);
+  const auto vertex_of = [&](std::int32_t v) {
+    std::int32_t& n = number[static_cast<std::size_t>(mesh.twin_of(v))];
+    if (n == PlanMesh::kNone) {
+      n = static_cast<std::int32_t>(tin.vertices.size());
+      const Xy p = map.of_sample(mesh.x(v), mesh.y(v));
+      tin.vertices.push_back(tin.from_crs({p.x, p.y, mesh.z(v)}));
+    }
+    return n;
+  };
+  // Counterclockwise in rows that run down is clockwise on the ground, unless the raster is mirrored.
+  const auto& g = map.coefficients();
+  const bool mirrored = g[1] * g[5] - g[2] * g[4] > 0;
+  TinAttribute deviation{"deviation", {}};
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles()); ++t) {
+    if (!mesh.alive(t)) continue;
+    const std::int32_t a = mesh.vertex(3 * t), b = mesh.vertex(3 * t + 1), c = mesh.vertex(3 * t + 2);
+    const std::int32_t first = vertex_of(a), second = vertex_of(b), third = vertex_of(c);
+    tin.faces.push_back(mirrored ? Face{first, second, third} : Face{first, third, second});
+    const Deviation off = deviation_of(original, place_of(mesh, a), place_of(mesh, b), place_of(mesh, c));
+    SimplifyReport& report = result.report;
+    report.largest_deviation_m = std::max(report.largest_deviation_m, off.metres);
+    report.largest_ratio = std::max(report.largest_ratio, off.ratio);
+    deviation.values.push_back(rounded_up(off.metres));
+  }
+  tin.face_attributes.push_back(std::move(deviation));
+  result.report.faces_after = tin.faces.size();
+}
+
+}  // namespace
+
+SimplifiedTin simplify_dem(const DemTerrain& terrain, const SimplifyOptions& options, Progress& progress) {
+  check(terrain, options);
+  MemoryBudget(options.memory_bytes)
+      .require(terrain.heights.size() * kBytesPerSample, "Simplifying the DEM", "Give a part of it.");
+  const Workers workers(options.threads);
+  progress.begin(1, 1);
+  SimplifiedTin result;
+  const Original original(terrain.heights, options.tolerance, options.tolerance_m);
+  PlanMesh mesh(terrain.heights);
+  result.report.faces_before = mesh.count_faces();
+  if (result.report.faces_before == 0)
+    throw InvalidInput("The DEM has no three samples side by side that are not nodata: it makes no surface.");
+  fix(mesh, options);
+  const auto target = static_cast<std::size_t>(options.target_faces);
+  if (target < result.report.faces_before) {
+    decimate(mesh, original, target > 0 ? result.report.faces_before - target : 0, workers, progress);
+  }
+  write(mesh, terrain, original, result);
+  progress.finish();
+  return result;
+}
+
+}  // namespace sightbound

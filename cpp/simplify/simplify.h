@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The terrain with as few triangles as can be had, nowhere further from the original than its tolerance.
+//
+// At every place of the original's footprint, inside triangles as well as at samples,
+//   |height of the simplified TIN - height of the original| <= tolerance there,
+// where the original is the regular TIN of a DEM (dem.h) and the tolerance is a constant or linear on each of
+// its triangles. The footprint stays, holes and islands of nodata too; no triangle is turned over, folded or
+// without area. A tolerance of 0 removes only what is coplanar. The same bytes for any number of threads.
+// Method, and what is certified: docs/algorithms/simplify.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "base/progress.h"
+#include "terrain/geotransform.h"
+#include "terrain/grid.h"
+#include "terrain/tin.h"
+
+namespace sightbound {
+
+// A DEM in memory, or a window of one (dem.h): heights in the core's row order.
+struct DemTerrain {
+  const Grid<float>& heights;  // metres, NaN = nodata
+  Geotransform geotransform;   // of the same window
+  double metres_per_unit = 1;  // of the CRS in plan: the CRS must be projected
+  std::string crs_wkt;
+};
+
+struct SimplifyOptions {
+  double tolerance_m = 1;    // the same everywhere, unless:
+  Grid<float> tolerance;     // of each sample, metres, linear on each triangle; empty = tolerance_m
+  Grid<std::uint8_t> keep;   // samples that stay vertices at their own height where not 0; empty = none
+  bool keep_border = false;  // all samples of the outline and of holes stay: neighbouring tiles fit
+  // Stop as soon as there are no more faces, cheapest collapses first (one thread); 0 = until nothing can be
+  // removed.
+  std::int64_t target_faces = 0;
+  std::size_t memory_bytes = 0;  // budget; 0 = three quarters of the memory usable
+  int threads = 0;               // 0 = all
+};
+
+struct SimplifyReport {
+  std::size_t faces_before = 0, faces_after = 0;
+  double largest_deviation_m = 0;  // certified: nowhere more
+  double largest_ratio = 0;        // of deviation to tolerance, certified; 0 where both are 0
+};
+
+struct SimplifiedTin {
+  // Faces up. Origin and units as regular_tin() has them (regular_tin.h). Face attribute "deviation": the
+  // largest on that face, metres, rounded up.
+  Tin tin;
+  SimplifyReport report;
+};
+
+// Throws InvalidInput (a tolerance that is negative or not finite, fewer than 2 x 2 samples, no triangle,
+// sizes that do not agree), OverBudget, Cancelled.
+SimplifiedTin simplify_dem(const DemTerrain&, const SimplifyOptions&, Progress&);
+
+}  // namespace sightbound

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "simplify/simplify.h"
+#include "support/overlay_oracle.h"
+#include "support/says.h"
+#include "support/terrains.h"
+
+namespace sightbound {
+namespace {
+
+using namespace testing;
+
+// What rounding adds to an area in raster coordinates, cells.
+constexpr double kNoArea = 1e-6;
+
+DemTerrain terrain_of(const Grid<float>& heights, const std::array<double, 6>& map = kNorthUp) {
+  return {heights, Geotransform(map), 1, ""};
+}
+
+SimplifyOptions within(double tolerance) {
+  SimplifyOptions options;
+  options.tolerance_m = tolerance;
+  return options;
+}
+
+SimplifiedTin simplified(const DemTerrain& terrain, const SimplifyOptions& options) {
+  Progress progress;
+  return simplify_dem(terrain, options, progress);
+}
+
+double tolerance_at(const SimplifyOptions& options, int r, int c) {
+  return options.tolerance.empty() ? options.tolerance_m : options.tolerance.at(r, c);
+}
+
+// Every promise of the header, by the oracle.
+OverlayReport expect_kept(const DemTerrain& terrain, const SimplifyOptions& options,
+                          const SimplifiedTin& made) {
+  const OverlayReport seen = overlay_report(
+      terrain.heights, terrain.geotransform, [&](int r, int c) { return tolerance_at(options, r, c); },
+      made.tin);
+  EXPECT_LE(seen.excess, 0);
+  EXPECT_GE(made.report.largest_deviation_m, seen.deviation);
+  EXPECT_GE(made.report.largest_ratio, seen.ratio);
+  EXPECT_LT(seen.uncovered, kNoArea);
+  EXPECT_LT(std::abs(seen.outside), kNoArea);
+  EXPECT_LT(seen.overlap, kNoArea);
+  EXPECT_EQ(seen.not_up, 0U);
+  EXPECT_EQ(seen.non_manifold, 0U);
+  EXPECT_EQ(made.report.faces_after, made.tin.faces.size());
+  EXPECT_LE(made.report.faces_after, made.report.faces_before);
+  return seen;
+}
+
+struct Scene {
+  std::string name;
+  Grid<float> heights;
+};
+
+std::vector<Scene> scenes() {
+  std::vector<Scene> all;
+  const auto add = [&](const char* name, int rows, int cols, const std::function<double(int, int)>& f) {
+    all.push_back({name, grid_from(rows, cols, f)});
+  };
+  add("hills", 40, 33, [](int r, int c) { return hills(r, c, 0.8, 1); });
+  add("rough", 21, 30, [](int r, int c) { return 30 * noise(r, c, 2); });
+  add("a plain", 12, 17, [](int, int) { return 7.25; });
+  add("a slope", 15, 15, [](int r, int c) { return 0.1 * r - 0.3 * c; });
+  add("terraces", 26, 26, [](int r, int c) { return std::floor(hills(r, c, 1.2, 3) / 8) * 8; });
+  add("a spike", 17, 19, [](int r, int c) { return r == 8 && c == 9 ? 100 : 0; });
+  add("a ridge", 20, 20, [](int r, int c) { return -std::abs(r - c); });
+  add("one square", 2, 2, [](int r, int c) { return r + 2 * c; });
+  add("a strip", 2, 40, [](int r, int c) { return 5 * noise(r, c, 4); });
+  add("one triangle", 2, 2,
+      [](int r, int c) { return r == 1 && c == 0 ? kNan : 3.0f + static_cast<float>(c); });
+  add("a hole", 24, 24,
+      [](int r, int c) { return std::hypot(r - 11, c - 12) < 5 ? kNan : hills(r, c, 0.8, 5); });
+  add("islands", 24, 31,
+      [](int r, int c) { return noise(r / 4, c / 4, 6) < 0.4 ? kNan : hills(r, c, 0.9, 7); });
+  add("sieve", 20, 20, [](int r, int c) { return noise(r, c, 8) < 0.12 ? kNan : hills(r, c, 0.9, 9); });
+  return all;
+}
+
+TEST(Simplify, S1EveryPlaceIsWithinTheTolerance) {
+  for (const Scene& scene : scenes()) {
+    SCOPED_TRACE(scene.name);
+    const DemTerrain terrain = terrain_of(scene.heights);
+    for (const double tolerance : {0.05, 0.5, 2.0, 10.0, 1000.0}) {
+      SCOPED_TRACE(tolerance);
+      const SimplifyOptions options = within(tolerance);
+      expect_kept(terrain, options, simplified(terrain, options));
+    }
+  }
+}
+
+TEST(Simplify, S1WithAToleranceThatVaries) {
+  for (const Scene& scene : scenes()) {
+    SCOPED_TRACE(scene.name);
+    const DemTerrain terrain = terrain_of(scene.heights);
+    SimplifyOptions options;
+    options.tolerance = grid_from(scene.heights.rows(), scene.heights.cols(), [](int r, int c) {
+      const double e = 8 * noise(r / 3, c / 3, 11);
+      return e < 1 ? 0 : e;
+    });
+    expect_kept(terrain, options, simplified(terrain, options));
+  }
+}
+
+TEST(Simplify, S2HolesAndIslandsStay) {
+  for (const Scene& scene : scenes()) {
+    SCOPED_TRACE(scene.name);
+    const DemTerrain terrain = terrain_of(scene.heights);
+    SimplifyOptions options = within(5), all = within(5);
+    all.keep = Grid<std::uint8_t>(scene.heights.rows(), scene.heights.cols(), 1);
+    const SimplifiedTin made = simplified(terrain, options), full = simplified(terrain, all);
+    EXPECT_EQ(full.report.faces_after, full.report.faces_before);
+    EXPECT_EQ(expect_kept(terrain, options, made).holes, expect_kept(terrain, all, full).holes);
+  }
+}
+
+TEST(Simplify, WhateverTheRastersOrientation) {
+  const Grid<float> heights = grid_from(20, 26, [](int r, int c) { return hills(r, c, 0.8, 12); });
+  for (const std::array<double, 6>& map :
+       {kNorthUp, kSouthUp, std::array<double, 6>{4e5, -3, 0, 5e6, 0, -2},
+        std::array<double, 6>{4e5, 8, 6, 5e6, 6, -8}, std::array<double, 6>{4e5, 0, 5, 5e6, 5, 0}}) {
+    const DemTerrain terrain = terrain_of(heights, map);
+    const SimplifyOptions options = within(2);
+    const SimplifiedTin made = simplified(terrain, options);
+    expect_kept(terrain, options, made);
+    EXPECT_LT(made.report.faces_after, made.report.faces_before / 2);
+  }
+}
+
+TEST(Simplify, KeepsWhatItIsToldTo) {
+  const Grid<float> heights = grid_from(20, 26, [](int r, int c) { return hills(r, c, 0.8, 13); });
+  const DemTerrain terrain = terrain_of(heights);
+  SimplifyOptions options = within(10);
+  options.keep = Grid<std::uint8_t>(20, 26, 0);
+  options.keep.at(7, 11) = options.keep.at(8, 12) = options.keep.at(0, 5) = options.keep.at(19, 25) = 1;
+  const SimplifiedTin made = simplified(terrain, options);
+  expect_kept(terrain, options, made);
+  for (int r = 0; r < 20; ++r) {
+    for (int c = 0; c < 26; ++c) {
+      if (options.keep.at(r, c) == 0) continue;
+      const Xy at = terrain.geotransform.of_sample(c, r);
+      const Xyz place = made.tin.from_crs({at.x, at.y, heights.at(r, c)});
+      EXPECT_EQ(std::count(made.tin.vertices.begin(), made.tin.vertices.end(), place), 1) << r << " " << c;
+    }
+  }
+}
+
+TEST(Simplify, KeptBordersFit) {
+  const Grid<float> heights = grid_from(30, 30, [](int r, int c) { return hills(r, c, 0.8, 14); });
+  const DemTerrain terrain = terrain_of(heights);
+  SimplifyOptions options = within(10);
+  options.keep_border = true;
+  const SimplifiedTin made = simplified(terrain, options);
+  expect_kept(terrain, options, made);
+  std::size_t on_border = 0;
+  for (const Xyz& v : made.tin.vertices) {
+    const Xyz crs = made.tin.to_crs(v);
+    const Xy at = terrain.geotransform.to_raster(crs.x, crs.y);
+    const double edge = std::min({at.x, at.y, 29 - at.x, 29 - at.y});
+    if (std::abs(edge) > 1e-6) continue;
+    ++on_border;
+    EXPECT_EQ(crs.z, heights.at(static_cast<int>(std::lround(at.y)), static_cast<int>(std::lround(at.x))));
+  }
+  EXPECT_EQ(on_border, 4U * 29);
+}
+
+TEST(Simplify, StopsAtTheTarget) {
+  const Grid<float> heights = grid_from(30, 31, [](int r, int c) { return hills(r, c, 0.8, 17); });
+  const DemTerrain terrain = terrain_of(heights);
+  const std::size_t least = simplified(terrain, within(3)).report.faces_after;
+  for (const int target : {1000, 500, 300}) {
+    SimplifyOptions options = within(3);
+    options.target_faces = target;
+    const SimplifiedTin made = simplified(terrain, options);
+    expect_kept(terrain, options, made);
+    EXPECT_GE(made.tin.faces.size(), static_cast<std::size_t>(target - 1));
+    EXPECT_LE(made.tin.faces.size(), static_cast<std::size_t>(target));
+  }
+  SimplifyOptions options = within(3);
+  options.target_faces = 2;
+  EXPECT_LT(simplified(terrain, options).report.faces_after, 1.1 * static_cast<double>(least));
+  options.target_faces = 5000;
+  EXPECT_EQ(simplified(terrain, options).report.faces_after, 2U * 29 * 30);
+}
+
+TEST(Simplify, D1SameBytesForAnyNumberOfThreads) {
+  const Grid<float> heights = grid_from(300, 280, [](int r, int c) { return hills(r, c, 0.8, 15); });
+  SimplifyOptions options = within(2);
+  options.threads = 1;
+  const SimplifiedTin one = simplified(terrain_of(heights), options);
+  for (const int threads : {2, 0}) {
+    options.threads = threads;
+    const SimplifiedTin more = simplified(terrain_of(heights), options);
+    EXPECT_EQ(one.tin.vertices, more.tin.vertices);
+    EXPECT_EQ(one.tin.faces, more.tin.faces);
+    EXPECT_EQ(one.tin.face_attributes[0].values, more.tin.face_attributes[0].values);
+  }
+}
+
+TEST(Simplify, CanBeCancelled) {
+  const Grid<float> heights = grid_from(300, 300, [](int r, int c) { return hills(r, c, 0.8, 16); });
+  int calls = 0;
+  Progress progress([&](double) { return ++calls < 2; });
+  EXPECT_THROW(simplify_dem(terrain_of(heights), within(1), progress), Cancelled);
+}
+
+TEST(Simplify, RefusesWhatItCannotUse) {
+  const Grid<float> good = grid_from(4, 5, [](int r, int c) { return r * c; });
+  const auto message = [&](const Grid<float>& heights, SimplifyOptions options) {
+    try {
+      simplified(terrain_of(heights), options);
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_TRUE(says(message(good, within(-1)), "tolerance is -1"));
+  EXPECT_TRUE(says(message(good, within(std::nan(""))), "tolerance is"));
+  EXPECT_TRUE(says(message(Grid<float>(1, 5, 0.0f), within(1)), "1 x 5"));
+  EXPECT_TRUE(says(message(Grid<float>(4, 5, kNan), within(1)), "no surface"));
+  SimplifyOptions options;
+  options.tolerance = Grid<float>(4, 4, 1.0f);
+  EXPECT_TRUE(says(message(good, std::move(options)), "tolerance has 4 x 4"));
+  options = {};
+  options.keep = Grid<std::uint8_t>(3, 5, 1);
+  EXPECT_TRUE(says(message(good, std::move(options)), "keep has 3 x 5"));
+  options = {};
+  options.target_faces = -3;
+  EXPECT_TRUE(says(message(good, std::move(options)), "target_faces is -3"));
+}
+
+}  // namespace
+}  // namespace sightbound
