@@ -20,6 +20,7 @@ void bind_viewshed(py::module_& m);
 void bind_line_of_sight(py::module_& m);
 void bind_error_surfaces(py::module_& m);
 void bind_tin(py::module_& m);
+void bind_simplify(py::module_& m);
 void bind_volume(py::module_& m);
 void bind_hidden_volume(py::module_& m);
 void bind_volume_targets(py::module_& m);

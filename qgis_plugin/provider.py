@@ -9,6 +9,7 @@ from qgis.PyQt.QtGui import QIcon
 from . import core
 from .algorithms.build_error_volume import BuildErrorVolume
 from .algorithms.confidence_viewshed import ConfidenceViewshed
+from .algorithms.dem_to_tin import DemToTin
 from .algorithms.error_surfaces import ErrorSurfaces
 from .algorithms.line_of_sight_profile import LineOfSightProfile
 from .algorithms.subtract_observer import SubtractObserver
@@ -26,6 +27,7 @@ _ALGORITHMS = (
     VolumeTargets,
     SubtractObserver,
     VolumeToRaster,
+    DemToTin,
 )
 
 

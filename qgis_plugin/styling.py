@@ -7,6 +7,8 @@ from pathlib import Path
 from qgis.core import (
     QgsBasicNumericFormat,
     QgsColorRampLegendNodeSettings,
+    QgsMeshDatasetIndex,
+    QgsMeshLayer,
     QgsProcessingLayerPostProcessorInterface,
     QgsRasterLayer,
     QgsSingleBandPseudoColorRenderer,
@@ -41,6 +43,8 @@ class StyleOnLoad(QgsProcessingLayerPostProcessorInterface):
             feedback.pushWarning(message)
         if self.stretch and isinstance(layer, QgsRasterLayer):
             stretch_ramp(layer, self.stretch)
+        if self.stretch and isinstance(layer, QgsMeshLayer):
+            stretch_mesh(layer)
         if self.flat:
             layer.setRenderer3D(None)
         layer.triggerRepaint()
@@ -59,6 +63,32 @@ def stretch_ramp(layer, share):
     low, high = shader.minimumValue(), shader.maximumValue()
     if not largest > least or not high > low:
         return
+    _stretch(shader, least, largest)
+    _round_labels(shader, largest - least)
+    renderer.setClassificationMin(least)
+    renderer.setClassificationMax(largest)
+
+
+def stretch_mesh(layer):
+    """The same for the dataset group that a mesh layer shows; all values are spanned."""
+    settings = layer.rendererSettings()
+    group = settings.activeScalarDatasetGroup()
+    if group < 0:
+        return
+    values = layer.datasetGroupMetadata(QgsMeshDatasetIndex(group))
+    if not values.maximum() > values.minimum():
+        return
+    scalar = settings.scalarSettings(group)
+    shader = scalar.colorRampShader()
+    _stretch(shader, values.minimum(), values.maximum())
+    scalar.setColorRampShader(shader)
+    scalar.setClassificationMinimumMaximum(values.minimum(), values.maximum())
+    settings.setScalarSettings(group, scalar)
+    layer.setRendererSettings(settings)
+
+
+def _stretch(shader, least, largest):
+    low, high = shader.minimumValue(), shader.maximumValue()
     items = shader.colorRampItemList()
     for item in items:
         item.value = least + (item.value - low) / (high - low) * (largest - least)
@@ -66,9 +96,6 @@ def stretch_ramp(layer, share):
     shader.setColorRampItemList(items)
     shader.setMinimumValue(least)
     shader.setMaximumValue(largest)
-    _round_labels(shader, largest - least)
-    renderer.setClassificationMin(least)
-    renderer.setClassificationMax(largest)
 
 
 def _round_labels(shader, span):

@@ -15,7 +15,7 @@ from qgis.core import QgsProcessingParameterDefinition, QgsProcessingParameterEn
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "qgis_reference.md"
 HEAD = """# The QGIS algorithms
 
-Provider *Sightbound*, groups *Visibility* and *Error volume*. Written by `scripts/write_qgis_reference.py` from the algorithms; the same
+Provider *Sightbound*, groups *Visibility*, *Error volume* and *Simplification*. Written by `scripts/write_qgis_reference.py` from the algorithms; the same
 texts are the help in QGIS. Parameters marked *dynamic* take a number, a field or an expression. In `qgis_process` and
 `processing.run` give them by the names in the first column; words such as `LE90` are given as they are.
 """
@@ -26,6 +26,7 @@ def reference(provider):
     names = (
         "confidenceviewshed", "errorsurfaces", "lineofsightprofile",
         "builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster",
+        "demtotin",
     )
     return HEAD + "".join(section(provider.algorithm(name)) for name in names)
 

@@ -19,6 +19,7 @@ from .error_model import ErrorModel, terrain_table
 from .error_surfaces import ErrorSurfaces, error_surfaces
 from .hidden_volume import HiddenRasters, HiddenVolume
 from .line_of_sight import LineOfSight, line_of_sight, lines_of_sight
+from .simplify import SimplifiedTin, dem_to_tin
 from .tin import Tin, read_tin, tin_layers
 from .viewshed import viewshed, viewsheds
 from .viewshed_result import ViewshedResult
@@ -46,12 +47,14 @@ __all__ = [
     "HiddenRasters",
     "HiddenVolume",
     "LineOfSight",
+    "SimplifiedTin",
     "Subtraction",
     "TargetSight",
     "Tin",
     "ViewshedResult",
     "VolumeLayer",
     "defaults",
+    "dem_to_tin",
     "error_surfaces",
     "estimate_error",
     "estimate_volume_viewshed",

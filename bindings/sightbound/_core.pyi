@@ -318,3 +318,17 @@ def read_tin(
     progress: _Progress,
 ) -> Tin: ...
 def tin_layers(path: str) -> list[str]: ...
+
+class DemToTinOptions:
+    error_is_tolerance: bool
+    confidence: float
+    extent: Extent | None
+    keep_border: bool
+    target_faces: int
+    threads: int
+    memory_budget: int
+    def __init__(self) -> None: ...
+
+def dem_to_tin(
+    dem: DemSource, model: ErrorModel, options: DemToTinOptions, progress: _Progress
+) -> tuple[Tin, dict[str, Any]]: ...

@@ -12,7 +12,13 @@ from qgis.core import (
 
 VISIBILITY = ("confidenceviewshed", "errorsurfaces", "lineofsightprofile")
 VOLUME = ("builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster")
-ALGORITHMS = VISIBILITY + VOLUME
+SIMPLIFICATION = ("demtotin",)
+ALGORITHMS = VISIBILITY + VOLUME + SIMPLIFICATION
+GROUPS = {
+    "visibility": ("Visibility", VISIBILITY),
+    "errorvolume": ("Error volume", VOLUME),
+    "simplification": ("Simplification", SIMPLIFICATION),
+}
 ERROR_BLOCK = """VERTICAL_ACCURACY VERTICAL_MEASURE GEOLOGIC_VARIATION HORIZONTAL_ACCURACY HORIZONTAL_MEASURE
     ERROR_RASTER GEOLOGIC_MODEL GEOLOGIC_RANGE GEOLOGIC_RASTER TERRAIN_TYPES TERRAIN_FIELD TERRAIN_TABLE
     ERROR_MODEL""".split()
@@ -64,7 +70,7 @@ def test_error_block_is_the_same_everywhere(provider):
         block = [algorithm.parameterDefinition(name) for name in ERROR_BLOCK]
         return [(one.type(), one.description(), one.defaultValue(), one.flags(), one.help()) for one in block]
 
-    blocks = [described(provider.algorithm(name)) for name in (*VISIBILITY, "builderrorvolume")]
+    blocks = [described(provider.algorithm(name)) for name in (*VISIBILITY, "builderrorvolume", "demtotin")]
     assert all(block == blocks[0] for block in blocks)
 
 
@@ -77,8 +83,8 @@ def test_heights_and_limits_are_dynamic(provider):
 
 
 def test_every_algorithm_says_what_it_is(algorithm):
-    group = ("Error volume", "errorvolume") if algorithm.name() in VOLUME else ("Visibility", "visibility")
-    assert (algorithm.group(), algorithm.groupId()) == group
+    label, members = GROUPS[algorithm.groupId()]
+    assert algorithm.group() == label and algorithm.name() in members
     assert algorithm.shortDescription() and algorithm.shortHelpString() and algorithm.helpUrl()
     assert len(algorithm.tags()) > 5
     assert Path(algorithm.svgIconPath()).is_file() and not algorithm.icon().isNull()
@@ -122,7 +128,7 @@ def test_dialog_hands_over_what_the_algorithm_accepts(algorithm, dem, observers,
 
     dialog = AlgorithmDialog(algorithm.create())
     file = "volume.vdb"  # the dialog looks at the ending alone
-    given = {"INPUT": dem, "OBSERVERS": observers, "TARGETS": observers, "HIDDEN": file}
+    given = {"INPUT": dem, "OBSERVERS": observers, "TARGETS": observers, "HIDDEN": file, "TOLERANCE": 1.0}
     if algorithm.parameterDefinition("INPUT").type() == "file":
         given["INPUT"] = file
     dialog.setParameters(

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+#include <utility>
+
+#include "bindings.h"
+#include "progress_bridge.h"
+#include <pybind11/stl.h>
+
+#include "jobs/dem_to_tin_job.h"
+#include "terrain/regular_tin.h"
+
+namespace sightbound::python {
+
+namespace {
+
+void bind_options(py::module_& m) {
+  py::class_<DemToTinOptions>(m, "DemToTinOptions")
+      .def(py::init<>())
+      .def_property(
+          "error_is_tolerance",
+          [](const DemToTinOptions& self) { return self.error_means == ErrorMeans::kTolerance; },
+          [](DemToTinOptions& self, bool is) {
+            self.error_means = is ? ErrorMeans::kTolerance : ErrorMeans::kConfidence;
+          })
+      .def_readwrite("confidence", &DemToTinOptions::confidence)
+      .def_readwrite("extent", &DemToTinOptions::extent)
+      .def_readwrite("keep_border", &DemToTinOptions::keep_border)
+      .def_readwrite("target_faces", &DemToTinOptions::target_faces)
+      .def_readwrite("threads", &DemToTinOptions::threads)
+      .def_readwrite("memory_budget", &DemToTinOptions::memory_budget);
+}
+
+py::tuple dem_to_tin(const std::shared_ptr<DemSource>& dem, const ErrorModel& model,
+                     const DemToTinOptions& options, const py::object& progress) {
+  using namespace py::literals;
+  DemToTin made = ProgressBridge(progress).run(
+      [&, given = model, used = options](Progress& p) { return run_dem_to_tin(*dem, given, used, p); });
+  const SimplifyReport& found = made.simplified.report;
+  py::dict report("faces_before"_a = found.faces_before, "faces_after"_a = found.faces_after,
+                  "largest_deviation"_a = found.largest_deviation_m, "largest_ratio"_a = found.largest_ratio,
+                  "least_tolerance"_a = made.least_tolerance_m,
+                  "largest_tolerance"_a = made.largest_tolerance_m, "error_model"_a = made.error_model,
+                  "warnings"_a = made.warnings);
+  auto tin = std::make_shared<RegularTin>(RegularTin{std::move(made.simplified.tin), {}});
+  return py::make_tuple(std::move(tin), std::move(report));
+}
+
+}  // namespace
+
+void bind_simplify(py::module_& m) {
+  bind_options(m);
+  m.def("dem_to_tin", &dem_to_tin, py::arg("dem"), py::arg("model"), py::arg("options"), py::arg("progress"));
+}
+
+}  // namespace sightbound::python

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Few triangles that never leave the terrain's error."""
+
+from __future__ import annotations
+
+from . import _arguments as arguments
+from . import _quantities as quantities
+from ._loading import core
+from .dem import Dem, core_dem
+from .error_model import ErrorModel, core_model
+from .tin import Tin
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from ._arguments import Box, Progress
+    from ._quantities import Quantity
+
+_DEFAULTS = core.defaults()
+
+
+class SimplifiedTin(Tin):
+    """A TIN with a `report` on how it was made. The face attribute "deviation" is the largest on that face, metres, rounded up."""
+
+    __slots__ = ("_report",)
+
+    _report: dict[str, Any]
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """faces_before, faces_after; largest_deviation (metres) and largest_ratio (of deviation to tolerance), certified: nowhere
+        more, also inside triangles; least_tolerance, largest_tolerance (metres, at the samples); error_model (JSON of what was
+        used, None with a tolerance); warnings; version."""
+        return self._report
+
+
+def dem_to_tin(
+    dem: Dem,
+    *,
+    tolerance: Quantity = None,
+    error_model: ErrorModel | None = None,
+    confidence: float = _DEFAULTS["confidence"],
+    extent: Box | None = None,
+    keep_border: bool = False,
+    target_faces: int | None = None,
+    threads: int | None = None,
+    memory_budget: float | None = None,
+    progress: Progress | None = None,
+) -> SimplifiedTin:
+    """Makes the smallest TIN that stays within a tolerance of the DEM, or within its error, at every place.
+
+    The original is the surface that viewsheds use: all samples, every square of four split along its NW-SE diagonal. At every
+    place, inside triangles as well as at samples, |height of the TIN - height of the original| <= tolerance there. The outline,
+    holes and islands of nodata stay. The same bytes for any number of threads.
+
+    Args:
+        dem: as read_dem() returns it, in a projected CRS or none.
+        tolerance: metres: a number, the path of a raster (or (path, band)) of any grid and CRS, or an array on the DEM's grid, in its
+            row order; between samples it is linear on each triangle.
+        error_model: instead of a tolerance: the TIN stays within z(confidence) times sigma of the samples, which never leaves the error
+            volume. Its vertical_rmse says how much the measured heights may be wrong; an estimate from the DEM cannot.
+        confidence: of the error, between 0 and 1.
+        extent: (x_min, y_min, x_max, y_max) in the DEM's CRS, snapped outward to its cells; None for the whole DEM.
+        keep_border: keep all samples of the outline and of holes, so that neighbouring tiles fit.
+        target_faces: stop at that many faces, the cheapest removed first; None to remove all that can be.
+        threads: None for all cores.
+        memory_budget: bytes; None for three quarters of the memory.
+        progress: called with the fraction done, at most ten times a second; False cancels.
+
+    Raises:
+        ValueError: neither or both of tolerance and error_model, a wrong argument, a CRS in degrees.
+        OSError: a file cannot be read.
+        MemoryError: the job would exceed the memory budget.
+        Cancelled: progress returned False.
+    """
+    if (tolerance is None) == (error_model is None):
+        raise ValueError("give either tolerance (metres) or error_model with vertical_rmse: how far the TIN may be from the DEM.")
+    options = core.DemToTinOptions()
+    options.error_is_tolerance = tolerance is not None
+    options.confidence = arguments.number("confidence", confidence)
+    options.extent = arguments.extent(extent)
+    options.keep_border = bool(keep_border)
+    options.target_faces = 0 if target_faces is None else _count(target_faces)
+    options.threads = arguments.threads(threads)
+    options.memory_budget = arguments.memory_budget(memory_budget)
+    model = error_model if tolerance is None else _as_model(tolerance, dem)
+    made, report = core.dem_to_tin(core_dem(dem), core_model(model, dem), options, progress)
+    if tolerance is not None:
+        report["error_model"] = None
+    report["version"] = core.__version__
+    return _wrapped(made, report)
+
+
+def _as_model(tolerance: Quantity, dem: Dem) -> ErrorModel:
+    """An error that is the tolerance: rasters and arrays are then aligned as errors are."""
+    value = quantities.from_argument("tolerance", tolerance)
+    if hasattr(value, "shape") and value.shape != dem.shape:
+        raise ValueError(f"tolerance has shape {value.shape}, the DEM has {dem.shape}; give one value per cell.")
+    if isinstance(value, float) and not 0 <= value < float("inf"):
+        raise ValueError(f"tolerance is {value}; give metres, 0 or more.")
+    return ErrorModel(vertical_rmse=tolerance, horizontal_rmse=0, geologic_variation=0)
+
+
+def _count(faces: Any) -> int:
+    if isinstance(faces, bool) or int(faces) != faces or faces < 1:
+        raise ValueError(f"target_faces is {faces!r}; it must be a whole number of 1 or more.")
+    return int(faces)
+
+
+def _wrapped(made: core.Tin, report: dict[str, Any]) -> SimplifiedTin:
+    tin = SimplifiedTin.__new__(SimplifiedTin)
+    tin._core = made
+    tin._report = report
+    return tin

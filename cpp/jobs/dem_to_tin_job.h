@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A whole job: a DEM to the smallest TIN that stays within its error, or within a tolerance.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "error_model/error_model.h"
+#include "jobs/windows.h"
+#include "simplify/simplify.h"
+#include "terrain/dem.h"
+
+namespace sightbound {
+
+// What an error model means for the surface: it stays within z(confidence) sigma_s, or sigma_s is the
+// tolerance itself.
+enum class ErrorMeans { kConfidence, kTolerance };
+
+struct DemToTinOptions {
+  ErrorMeans error_means = ErrorMeans::kConfidence;
+  double confidence = 0.95;       // with kConfidence
+  std::optional<Extent> extent;   // snapped outward to the DEM's grid; empty = the whole DEM
+  bool keep_border = false;       // all samples of the outline and of holes stay: neighbouring tiles fit
+  std::int64_t target_faces = 0;  // 0 = until nothing can be removed
+  int threads = 0;                // 0 = all cores
+  std::size_t memory_budget = 0;  // bytes; 0 = three quarters of the machine's memory
+};
+
+struct DemToTin {
+  SimplifiedTin simplified;
+  double least_tolerance_m = 0, largest_tolerance_m = 0;  // at the samples
+  std::string error_model;                                // JSON of what was used
+  std::vector<std::string> warnings;
+};
+
+// Between the samples sigma is never below sigma_s there: what lies within E(c) of sigma_s lies within the
+// error volume. Throws InvalidInput (degrees: reproject), IoError, OverBudget, Cancelled.
+DemToTin run_dem_to_tin(const DemSource&, const ErrorModel&, const DemToTinOptions&, Progress&);
+
+}  // namespace sightbound

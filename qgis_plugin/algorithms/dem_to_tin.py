@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""DEM to TIN: few triangles that stay within the terrain's error, or within a tolerance, at every place."""
+
+from qgis.core import (
+    QgsProcessingContext,
+    QgsProcessingOutputNumber,
+    QgsProcessingOutputString,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingUtils,
+)
+
+from .. import parameters as blocks
+from ..error_block import check_error_block, log_error_model, read_error_block
+from ..errors import core_errors
+from ..feedback import Progress
+from ..rasters import open_dem, read_extent, read_raster
+from ..styling import StyleOnLoad
+from ..text import tr
+from ..values import given, number_or_none, word
+from .base import SightboundAlgorithm
+
+MESH_FILES = "PLY (*.ply);;UGRID NetCDF (*.nc);;2DM (*.2dm);;OBJ (*.obj);;GeoPackage (*.gpkg)"
+# output, label, key of the report
+NUMBERS = (
+    ("TRIANGLES_BEFORE", "Triangles of the elevation model", "faces_before"),
+    ("TRIANGLES", "Triangles of the TIN", "faces_after"),
+    ("LARGEST_DEVIATION", "Largest deviation anywhere (m)", "largest_deviation"),
+    ("LARGEST_RATIO", "Largest share of the tolerance that is used", "largest_ratio"),
+)
+
+
+class DemToTin(SightboundAlgorithm):
+    NAME = "demtotin"
+    TITLE = "DEM to TIN"
+    SUMMARY = "How few triangles can carry this terrain without leaving its error, or a tolerance, anywhere?"
+    TAGS = ("tin", "mesh", "triangulation", "simplify", "decimate", "tolerance", "error", "dem", "raster", "terrain")
+
+    def group(self):
+        return tr("Simplification")
+
+    def groupId(self):
+        return "simplification"
+
+    def initAlgorithm(self, configuration=None):
+        border = QgsProcessingParameterBoolean(
+            "KEEP_BORDER", tr("Keep all samples of the outline (tiles that fit)"), False, True
+        )
+        faces = blocks.number("TARGET_TRIANGLES", tr("Stop at so many triangles"), None, 1, None, integer=True)
+        for parameter in (
+            blocks.dem_block()
+            + [
+                blocks.metres("TOLERANCE", tr("Tolerance in metres (empty: the error below)")),
+                blocks.advanced(blocks.raster("TOLERANCE_RASTER", tr("Tolerance as a raster (metres)"), True)),
+                blocks.confidence_parameter(),
+            ]
+            + blocks.error_block()
+            + [
+                blocks.advanced(border),
+                blocks.advanced(faces),
+                blocks.vertical_unit_parameter(),
+                blocks.extent_parameter(),
+                blocks.threads_parameter(),
+            ]
+        ):
+            self.add(parameter)
+        self.add(QgsProcessingParameterFileDestination("OUTPUT", tr("TIN (mesh)"), MESH_FILES))
+        polygons = QgsProcessingParameterFileDestination(
+            "OUTPUT_POLYGONS", tr("TIN as polygons"), "GeoPackage (*.gpkg)"
+        )
+        self.add(polygons, True, False)
+        for name, label, _ in NUMBERS:
+            self.addOutput(QgsProcessingOutputNumber(name, tr(label)))
+        self.addOutput(QgsProcessingOutputString("ERROR_MODEL_USED", tr("Error model used (JSON)")))
+
+    def contradiction(self, parameters, context):
+        errors = ("VERTICAL_ACCURACY", "ERROR_RASTER", "ERROR_MODEL")
+        said = [name for name in ("TOLERANCE", "TOLERANCE_RASTER") if given(parameters, name)]
+        if len(said) == 2:
+            return tr("TOLERANCE_RASTER: TOLERANCE says the same thing; give only one of them.")
+        if said and any(given(parameters, name) for name in errors):
+            return tr("{}: the accuracy of the heights says the same thing; give only one of them.").format(said[0])
+        if not said and not any(given(parameters, name) for name in errors):
+            return tr("TOLERANCE: say how far the TIN may be from the elevation model, here or as VERTICAL_ACCURACY.")
+        return self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
+
+    def read_input(self, parameters, context, feedback):
+        self.dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
+        self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
+        raster = read_raster(self, parameters, "TOLERANCE_RASTER", context, feedback)
+        self.tolerance = raster.path if raster else number_or_none(self, parameters, "TOLERANCE", context)
+        self.error = read_error_block(self, parameters, context, feedback, self.dem)
+        self.extent = read_extent(self, parameters, context, self.dem)
+
+    def compute(self, sightbound, parameters, context, feedback):
+        faces = number_or_none(self, parameters, "TARGET_TRIANGLES", context)
+        tin = sightbound.dem_to_tin(
+            open_dem(sightbound, self.dem, self.vertical_unit, feedback),
+            tolerance=self.tolerance,
+            error_model=self.error.model(sightbound) if self.tolerance is None else None,
+            confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
+            extent=self.extent,
+            keep_border=self.parameterAsBoolean(parameters, "KEEP_BORDER", context),
+            target_faces=None if faces is None else int(faces),
+            threads=self.threads(parameters, context),
+            progress=Progress(feedback, 0.0, 90.0),
+        )
+        results = self._told(tin.report, feedback)
+        for name, first in (("OUTPUT", 90.0), ("OUTPUT_POLYGONS", 95.0)):
+            if not given(parameters, name):
+                continue
+            path = results[name] = self.parameterAsFileOutput(parameters, name, context)
+            with core_errors(name):
+                warnings = tin.write(path, progress=Progress(feedback, first, first + 5.0))
+            for warning in warnings:
+                feedback.pushWarning(warning)
+            self._load(path, name, context)
+        return results
+
+    def _told(self, report, feedback):
+        for warning in report["warnings"]:
+            feedback.pushWarning(warning)
+        results = {name: report[key] for name, _, key in NUMBERS}
+        for name, label, _ in NUMBERS:
+            feedback.pushInfo(f"{tr(label)}: {results[name]:.6g}")
+        if report["error_model"]:
+            log_error_model(feedback, report["error_model"])
+            results["ERROR_MODEL_USED"] = report["error_model"]
+        return results
+
+    def _load(self, path, name, context):
+        if context.project() is None or path.endswith(".obj"):  # QGIS reads no OBJ
+            return
+        polygons = path.endswith(".gpkg")
+        hint = QgsProcessingUtils.LayerHint
+        details = QgsProcessingContext.LayerDetails(
+            tr("TIN"), context.project(), name, hint.Vector if polygons else hint.Mesh
+        )
+        if not polygons:
+            details.setPostProcessor(StyleOnLoad("tin", 1.0))
+        context.addLayerToLoadOnCompletion(path, details)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""DEM to TIN through processing.run: files, numbers, layers, and what is refused."""
+
+import json
+
+import pytest
+import scenes
+from qgis.core import QgsMeshLayer, QgsProcessingContext, QgsProcessingException, QgsProcessingUtils, QgsProject
+
+
+def simplify(run, dem, folder, **more):
+    return run("demtotin", **{"INPUT": dem, "TOLERANCE": 1.0, "OUTPUT": str(folder / "tin.ply"), **more})
+
+
+def test_mesh_polygons_and_numbers(run, dem, tmp_path):
+    polygons, log = str(tmp_path / "tin.gpkg"), scenes.Log()
+    found = simplify(run, dem, tmp_path, OUTPUT_POLYGONS=polygons, feedback=log)
+    assert found["TRIANGLES"] < 0.5 * found["TRIANGLES_BEFORE"] == 0.5 * 2 * 39 * 29
+    assert 0.5 < found["LARGEST_DEVIATION"] <= 1.0 and found["LARGEST_RATIO"] <= 1.0
+    mesh = QgsMeshLayer(found["OUTPUT"], "tin", "mdal")
+    assert mesh.isValid() and mesh.crs().authid() == "EPSG:32633" and mesh.meshFaceCount() == found["TRIANGLES"]
+    assert mesh.datasetGroupCount() == 2
+    rows = scenes.rows_of(polygons)
+    assert len(rows) == found["TRIANGLES"]
+    assert max(row["deviation"] for row in rows) == pytest.approx(found["LARGEST_DEVIATION"])
+    assert any("Triangles of the TIN" in line for line in log.infos) and log.warnings == []
+
+
+def test_an_accuracy_is_a_tolerance_at_the_confidence(run, dem, tmp_path):
+    error = {"TOLERANCE": None, "VERTICAL_ACCURACY": 0.5, "GEOLOGIC_VARIATION": 0.0}
+    found = simplify(run, dem, tmp_path, **error)
+    assert 0.5 < found["LARGEST_DEVIATION"] <= 0.98
+    assert json.loads(found["ERROR_MODEL_USED"])["vertical_rmse"] == 0.5
+    surer = simplify(run, dem, tmp_path, CONFIDENCE=0.999, **error)
+    assert surer["TRIANGLES"] < found["TRIANGLES"]
+
+
+def test_a_raster_of_tolerances(run, dem, tmp_path):
+    values = scenes.hills() * 0 + 0.25
+    values[:, 20:] = 3.0
+    transform = (scenes.WEST, scenes.CELL, 0, scenes.NORTH, 0, -scenes.CELL)
+    path = str(tmp_path / "tolerance.tif")
+    scenes.write_raster(path, values, transform, scenes.UTM)
+    found = simplify(run, dem, tmp_path, TOLERANCE=None, TOLERANCE_RASTER=path)
+    assert 1.0 < found["LARGEST_DEVIATION"] <= 3.0
+    assert found["TRIANGLES"] > simplify(run, dem, tmp_path, TOLERANCE=3.0)["TRIANGLES"]
+
+
+def test_the_mesh_is_loaded_with_edges_and_the_heights_colours(provider, dem, tmp_path, log):
+    context, project = QgsProcessingContext(), QgsProject()
+    context.setProject(project)
+    parameters = {"INPUT": dem, "TOLERANCE": 1.0, "OUTPUT": str(tmp_path / "tin.ply")}
+    results, done = provider.algorithm("demtotin").create().run(parameters, context, log)
+    assert done, log.errors
+    details = context.layersToLoadOnCompletion()[results["OUTPUT"]]
+    layer = QgsProcessingUtils.mapLayerFromString(results["OUTPUT"], context, True, details.layerTypeHint)
+    details.postProcessor().postProcessLayer(layer, context, log)
+    settings = layer.rendererSettings()
+    assert settings.nativeMeshSettings().isEnabled() and settings.activeScalarDatasetGroup() == 0
+    heights = settings.scalarSettings(0)
+    assert 80 < heights.classificationMinimum() < heights.classificationMaximum() < 125
+    stops = [item.value for item in heights.colorRampShader().colorRampItemList()]
+    assert stops[0] == pytest.approx(heights.classificationMinimum()) and stops == sorted(stops)
+
+
+def test_tiles_and_targets(run, dem, tmp_path):
+    kept = simplify(run, dem, tmp_path, TOLERANCE=20.0, KEEP_BORDER=True)
+    assert kept["TRIANGLES"] >= 2 * (39 + 29) - 2 > simplify(run, dem, tmp_path, TOLERANCE=20.0)["TRIANGLES"]
+    assert abs(simplify(run, dem, tmp_path, TOLERANCE=20.0, TARGET_TRIANGLES=300)["TRIANGLES"] - 300) <= 2
+
+
+@pytest.mark.parametrize("wrong, message", [
+    ({"TOLERANCE": None}, "TOLERANCE: say how far"),
+    ({"VERTICAL_ACCURACY": 1.0}, "TOLERANCE: the accuracy"),
+    ({"TOLERANCE": None, "VERTICAL_ACCURACY": 1.0, "CONFIDENCE": 1.0}, "CONFIDENCE"),
+    ({"OUTPUT": "/nowhere/tin.ply"}, "OUTPUT"),
+    ({"OUTPUT": "tin.xyz"}, "OUTPUT"),
+])
+def test_what_is_wrong_is_named(run, dem, tmp_path, wrong, message):
+    if "OUTPUT" in wrong and "/" not in wrong["OUTPUT"]:
+        wrong = {**wrong, "OUTPUT": str(tmp_path / wrong["OUTPUT"])}
+    with pytest.raises(QgsProcessingException, match=message):
+        simplify(run, dem, tmp_path, **wrong)
+    assert list(tmp_path.glob("tin*")) == []
