@@ -24,5 +24,6 @@ PYBIND11_MODULE(_core, m) {
   python::bind_error_surfaces(m);
   python::bind_tin(m);
   python::bind_simplify(m);
+  python::bind_verify(m);
   python::bind_defaults(m);
 }

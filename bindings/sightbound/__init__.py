@@ -21,6 +21,7 @@ from .hidden_volume import HiddenRasters, HiddenVolume
 from .line_of_sight import LineOfSight, line_of_sight, lines_of_sight
 from .simplify import SimplifiedTin, dem_to_tin
 from .tin import Tin, read_tin, tin_layers
+from .verification import Verification, verify
 from .viewshed import viewshed, viewsheds
 from .viewshed_result import ViewshedResult
 from .volume import CoverRasters, ErrorVolume
@@ -51,6 +52,7 @@ __all__ = [
     "Subtraction",
     "TargetSight",
     "Tin",
+    "Verification",
     "ViewshedResult",
     "VolumeLayer",
     "defaults",
@@ -66,6 +68,7 @@ __all__ = [
     "subtract_observer",
     "terrain_table",
     "tin_layers",
+    "verify",
     "viewshed",
     "viewsheds",
     "volume_layer",

@@ -332,3 +332,24 @@ class DemToTinOptions:
 def dem_to_tin(
     dem: DemSource, model: ErrorModel, options: DemToTinOptions, progress: _Progress
 ) -> tuple[Tin, dict[str, Any]]: ...
+
+def verify_tin(
+    original: Tin,
+    simplified: Tin,
+    tolerance: float,
+    of_vertices: _Floats | None,
+    resolution: float,
+    threads: int,
+    memory_budget: int,
+    progress: _Progress,
+) -> tuple[dict[str, Any], _Floats]: ...
+def verify_dem(
+    original: DemSource,
+    simplified: Tin,
+    tolerance: float,
+    of_vertices: _Floats | None,
+    resolution: float,
+    threads: int,
+    memory_budget: int,
+    progress: _Progress,
+) -> tuple[dict[str, Any], _Floats]: ...

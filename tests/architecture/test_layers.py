@@ -16,8 +16,9 @@ BENEATH = {
     "volume": {"base", "terrain", "earth", "error_model"},
     "sight": {"base", "terrain", "earth", "error_model", "volume"},
     "simplify": {"base", "terrain"},
+    "verify": {"base", "terrain"},
     "io": {"base", "terrain", "earth", "error_model"},
-    "jobs": {"base", "terrain", "earth", "error_model", "volume", "sight", "io"},
+    "jobs": {"base", "terrain", "earth", "error_model", "volume", "sight", "simplify", "verify", "io"},
 }
 # Third-party headers that only one layer may know.
 ONLY_IN = {
@@ -63,6 +64,12 @@ def test_a_layer_includes_only_layers_beneath_it(layer):
             if header.split("/")[0] not in BENEATH[layer] | {layer}:
                 wrong.append(f"{path.relative_to(ROOT)} includes {header}")
     assert not wrong
+
+
+def test_who_simplifies_and_who_verifies_do_not_know_each_other():
+    """A proof that shares code with what it proves shares its mistakes."""
+    assert "simplify" not in BENEATH["verify"]
+    assert "verify" not in BENEATH.get("simplify", set())
 
 
 @pytest.mark.parametrize("layer", BENEATH)
