@@ -16,9 +16,6 @@ inline constexpr double kAtCorner = 1e-9;
 // Share of a zone that may lie in no face, for rounding.
 inline constexpr double kUncovered = 1e-6;
 
-inline double plan_length(const VolumeLine& line) {
-  return std::hypot(line.to.x - line.from.x, line.to.y - line.from.y);
-}
 // As d is measured: in plan for height fields, else in space.
 inline double length_in(const VolumeLine& line, Metric metric) {
   const double plan = plan_length(line);

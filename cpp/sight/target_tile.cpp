@@ -208,9 +208,10 @@ void TargetTile::see_from(std::size_t place, int i, int j, const std::vector<int
   }
 }
 
-TargetAnswer TargetTile::judge(std::size_t place, int i, int j, int k, EndZone& target) const {
+TargetAnswer TargetTile::judge(std::size_t place, int i, int j, int k, EndZone& target) {
   target.move_to_height(targets_.centre(i, j, k).z);
-  const RatioInterval ratio = ask_.sight.ratio(ask_.zones[place], target);
+  const auto [ratio, closest] = ask_.sight.least(ask_.zones[place], target, closest_);
+  if (closest < VolumeRays::kNever) closest_ = closest;
   const auto within = [most = static_cast<float>(ask_.most)](float b) { return std::clamp(b, -most, most); };
   TargetAnswer answer{static_cast<float>(proven_probability({within(ratio.low), within(ratio.high)})),
                       verdict_of(ratio, ask_.quantile)};

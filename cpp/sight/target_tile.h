@@ -81,7 +81,7 @@ class TargetTile {
   void see(const Block&, const std::vector<const Node*>& views);
   void see_column(int i, int j, const std::vector<const Node*>& views);
   void see_from(std::size_t place, int i, int j, const std::vector<int>& layers, EndZone& target);
-  TargetAnswer judge(std::size_t place, int i, int j, int k, EndZone& target) const;
+  TargetAnswer judge(std::size_t place, int i, int j, int k, EndZone& target);
   bool holds_around(std::uint8_t verdict, std::size_t place, const Box3& target) const;
   bool corners_hide(const Box3& views, const Box3& target) const;
 
@@ -90,7 +90,8 @@ class TargetTile {
   Progress& progress_;
   Block whole_;
   std::array<std::vector<TargetAnswer>, kSide * kSide> answers_;
-  std::size_t hint_;  // the place that last settled a column
+  std::size_t hint_;                     // the place that last settled a column
+  double closest_ = VolumeRays::kNever;  // share at which the last line was closest to the ground
 };
 
 }  // namespace sightbound

@@ -93,19 +93,21 @@ RatioInterval EndZone::least_in_space(const VolumeLine& line, double t0, double 
 
 VolumeSight::VolumeSight(const VolumeRays& rays, const GroundBend& bend) : rays_(rays), bend_(bend) {}
 
-RatioInterval VolumeSight::ratio(const EndZone& observer, const EndZone& target) const {
+LeastOnLine VolumeSight::least(const EndZone& observer, const EndZone& target, double hint) const {
   const Xyz &from = observer.place(), &to = target.place();
   const VolumeLine line{from, to, bend_.drop(to.x - from.x, to.y - from.y)};
   const Surface& surface = rays_.volume().surface();
   const float beyond = rays_.volume().beyond_ratio();
   const double length = length_in(line, surface.metric());
-  if (length == 0) return {beyond, beyond};
-  RatioInterval k = lesser(observer.least(line, true, beyond), target.least(line, false, beyond));
+  if (length == 0) return {{beyond, beyond}};
+  LeastOnLine found;
+  found.k = lesser(observer.least(line, true, beyond), target.least(line, false, beyond));
   const double zone = kEndZoneCells * surface.spacing_m() / length;
-  if (k.high > -static_cast<float>(rays_.volume().largest_ratio()) && zone < 0.5) {
-    k = lesser(k, rays_.least(line, zone, 1 - zone));
+  if (found.k.high > -static_cast<float>(rays_.volume().largest_ratio()) && zone < 0.5) {
+    const LeastOnLine between = rays_.least_near(line, zone, 1 - zone, hint);
+    found = {lesser(found.k, between.k), between.at};
   }
-  return k;
+  return found;
 }
 
 LineBundle VolumeSight::bundle(const Box3& from, const Box3& to) const {

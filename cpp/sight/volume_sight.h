@@ -60,7 +60,11 @@ class VolumeSight {
   EndRoom room(const Xyz& middle, const Xyz& half) const { return EndRoom(rays_.volume(), middle, half); }
 
   // Bounds of k* between the two places, within +-K'.
-  RatioInterval ratio(const EndZone& observer, const EndZone& target) const;
+  RatioInterval ratio(const EndZone& observer, const EndZone& target) const {
+    return least(observer, target, VolumeRays::kNever).k;
+  }
+  // The same with a hint, as VolumeRays::least_near takes and gives it.
+  LeastOnLine least(const EndZone& observer, const EndZone& target, double hint) const;
 
   // Proofs for every line between two boxes; false = not proven. k* >= ratio for all; k* <= -ratio for all.
   // abs(ratio) <= K, > 0 where the end zones are judged. Sheets are never proven to block.

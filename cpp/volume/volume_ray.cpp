@@ -10,12 +10,17 @@ namespace sightbound {
 
 namespace {
 
+constexpr double kAroundHint = 8;  // voxels: within one leaf or two
+
 // The smallest k of a terrain that has an inside; bounds as places in the order of halves.
 struct LeastRatio {
   int low, high, certain;  // certain: -K or below
+  double at = VolumeRays::kNever;
 
-  bool voxel(std::int32_t packed, bool, double) {
-    low = std::min(low, ordered_low(packed));
+  bool voxel(std::int32_t packed, bool, double t) {
+    const int here = ordered_low(packed);
+    at = here < low ? t : at;
+    low = std::min(low, here);
     high = std::min(high, ordered_high(packed));
     return high > certain;
   }
@@ -27,6 +32,7 @@ struct LeastRatio {
     high = std::min(high, 0);
     return true;
   }
+  bool is_certain() const { return high <= certain; }
 };
 
 // The smallest distance from a sheet, and how far through it the line goes.
@@ -95,19 +101,22 @@ WalkedTrees VolumeRays::walked() const {
 
 VolumeRays::~VolumeRays() = default;
 
-RatioInterval VolumeRays::least(const VolumeLine& line, double t0, double t1) const {
+LeastOnLine VolumeRays::least_near(const VolumeLine& line, double t0, double t1, double hint) const {
   const float beyond_all = volume_.beyond_ratio();
   RayWalk walk(walked(), line);
   if (volume_.surface().sides() == Sides::kSheet) {
     Passage passage{beyond_all, beyond_all, 0, 0, 0, volume_.trees().ratios.background()};
     walk.run(t0, t1, passage);
-    if (passage.nearest > 0) return {passage.nearest, passage.farthest};
-    return {-beyond_all, passage.through > 0 ? -passage.through : passage.farthest};
+    if (passage.nearest > 0) return {{passage.nearest, passage.farthest}};
+    return {{-beyond_all, passage.through > 0 ? -passage.through : passage.farthest}};
   }
   const int most = ordered_half(half_above(static_cast<double>(beyond_all)));
   LeastRatio least{most, most, ordered_half(half_below(-volume_.largest_ratio()))};
-  walk.run(t0, t1, least);
-  return {from_ordered(least.low), from_ordered(least.high)};
+  const double around = kAroundHint * volume_.voxel_m() / plan_length(line);
+  const double from = std::max(t0, hint - around), to = std::min(t1, hint + around);
+  if (from < to) walk.run(from, to, least);
+  if (!least.is_certain()) walk.run(t0, t1, least);
+  return {{from_ordered(least.low), from_ordered(least.high)}, least.at};
 }
 
 double VolumeRays::first(const VolumeLine& line, double ratio, double t0, double t1) const {

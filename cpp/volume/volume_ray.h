@@ -10,6 +10,7 @@
 // columns.
 #pragma once
 
+#include <cmath>
 #include <memory>
 
 #include "volume/error_volume.h"
@@ -26,6 +27,10 @@ struct VolumeLine {
   Xyz at(double t) const { return {from.x + t * (to.x - from.x), from.y + t * (to.y - from.y), height(t)}; }
 };
 
+inline double plan_length(const VolumeLine& line) {
+  return std::hypot(line.to.x - line.from.x, line.to.y - line.from.y);
+}
+
 // Every line from a place of one box to a place of another.
 struct VolumeBeam {
   Box3 from, to;
@@ -37,6 +42,12 @@ struct LinePart {
 };
 // How closely a beam looks: at blocks of 8 x 8 columns, or, where these do not tell, at voxels.
 enum class Grain { kBlocks, kVoxels };
+
+// Bounds of the least k on a line, and the share at which the lower one was met.
+struct LeastOnLine {
+  RatioInterval k;
+  double at = 2;  // beyond 1 when k is K' everywhere
+};
 
 struct WalkedTrees;
 class BlockColumns;
@@ -58,7 +69,12 @@ class VolumeRays {
   // Sheets have no inside: there k* >= 0 is the smallest distance from the terrain in sigmas on whichever
   // side, and k* < 0 says that the line goes through it: from -k* or more on one side to -k* or more on the
   // other, with no border of the sheet in between.
-  RatioInterval least(const VolumeLine&, double t0 = 0, double t1 = 1) const;
+  RatioInterval least(const VolumeLine& line, double t0 = 0, double t1 = 1) const {
+    return least_near(line, t0, t1, kNever).k;
+  }
+  // The same; looks first where a neighbouring line was closest to the ground (`hint`, beyond 1 = not known),
+  // after which little else can matter. Bounds that are not below -K do not depend on the hint.
+  LeastOnLine least_near(const VolumeLine&, double t0, double t1, double hint) const;
 
   // The smallest t in [t0, t1] at which the line enters a voxel that may hold k below `ratio`; beyond 1 when
   // there is none. For sheets abs(k).

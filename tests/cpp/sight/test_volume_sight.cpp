@@ -102,6 +102,42 @@ TEST(VolumeSight, bounds_hold_the_definition_along_the_line) {
   EXPECT_GT(judged, 100);
 }
 
+// A hint says where to look first, not what is found.
+TEST(VolumeSight, hints_change_no_bounds) {
+  int known = 0, hidden = 0;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const RandomDem dem = rolling_dem(seed);
+    const ErrorVolume volume = volume_of(dem.surface(), 1.0, 0.5);
+    const VolumeRays rays(volume);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const Box3 box = volume.surface().bounds();
+    const auto somewhere = [&] {
+      const double x = unit(random) * box.high.x, y = unit(random) * box.high.y;
+      return Xyz{x, y, dem.place(x, y).height + 10 * unit(random)};
+    };
+    for (int n = 0; n < 200; ++n) {
+      const VolumeLine line{somewhere(), somewhere(), 3 * unit(random)};
+      const LeastOnLine plain = rays.least_near(line, 0.1, 0.9, VolumeRays::kNever),
+                        hinted = rays.least_near(line, 0.1, 0.9, 1.2 * unit(random) - 0.1);
+      const auto most = static_cast<float>(volume.largest_ratio());
+      if (plain.k.high > -most) {
+        EXPECT_EQ(hinted.k, plain.k) << seed << " " << n;
+        ++known;
+      } else {
+        EXPECT_LE(hinted.k.high, -most) << seed << " " << n;
+        ++hidden;
+      }
+      if (plain.at > 1) continue;
+      const LeastOnLine at_it = rays.least_near(line, 0.1, 0.9, plain.at);
+      EXPECT_LE(std::abs(at_it.at - plain.at), 1e-9 + 2 * std::sqrt(2.0) / plan_length(line))
+          << seed << " " << n;
+    }
+  }
+  EXPECT_GT(known, 100);
+  EXPECT_GT(hidden, 100);
+}
+
 // Guarantees V4 and V3: other voxels and the other direction may be less sure, never of the opposite.
 TEST(VolumeSight, smaller_voxels_and_the_way_back_never_swap_verdicts) {
   int sure = 0, lines = 0;
