@@ -8,11 +8,11 @@ beside it.
 
 import html
 import math
-from pathlib import Path
 from statistics import NormalDist
 from typing import NamedTuple
 
 from .line_outputs import critical_index
+from .pages import page, ticks
 from .text import tr
 
 MOST = 50  # drawings on a page
@@ -21,7 +21,6 @@ _WHOLE, _DETAIL = (60, 570), (650, 850)  # left and right edge of the two parts
 _TOP, _BOTTOM = 16, 260
 _DETAIL_SHARE = 0.02  # of the length, to either side of the critical place
 _DETAIL_PLACES = 12  # judged places to either side that the detail shows at least
-_STYLE = Path(__file__).parent / "styles" / "profiles.css"
 
 
 def write_profiles(path, lines, confidence, error_model):
@@ -34,19 +33,12 @@ def write_profiles(path, lines, confidence, error_model):
     summary = tr(
         "{} lines: {visible} visible, {uncertain} uncertain, {hidden} hidden at a confidence of {confidence:g}."
     )
-    title = tr("Lines of sight")
-    style = _STYLE.read_text(encoding="utf-8")
-    parts = [
-        "<!DOCTYPE html>",
-        f"<html><head><meta charset='utf-8'><title>{title}</title><style>{style}</style></head><body>",
-        f"<h1>{title}</h1>",
-        f"<p>{summary.format(len(lines), confidence=confidence, **counts)}</p>",
-    ]
+    parts = [f"<p>{summary.format(len(lines), confidence=confidence, **counts)}</p>"]
     if left_out:
         parts.append(f"<p>{tr('The first {} are drawn; {} were left out.').format(MOST, left_out)}</p>")
     parts += [_section(line, confidence) for line in lines[:MOST]]
-    parts.append(f"<h2>{tr('Error model used')}</h2><pre>{html.escape(error_model)}</pre></body></html>")
-    path.write_text("\n".join(parts), encoding="utf-8")
+    parts.append(f"<h2>{tr('Error model used')}</h2><pre>{html.escape(error_model)}</pre>")
+    path.write_text(page(tr("Lines of sight"), parts), encoding="utf-8")
 
 
 def _section(line, confidence):
@@ -144,25 +136,16 @@ class _Frame:
 
     def axes(self):
         parts = []
-        for height in _ticks(self.low, self.high, 5):
+        for height in ticks(self.low, self.high, 5):
             _, y = self.at(self.start, height)
             parts.append(f"<line class='grid' x1='{self.left}' x2='{self.right}' y1='{y:.1f}' y2='{y:.1f}'/>")
             parts.append(f"<text x='{self.left - 8}' y='{y + 4:.1f}' text-anchor='end'>{height:g} m</text>")
         kilometres = self.end >= 5000.0
-        for distance in _ticks(self.start, self.end, (self.right - self.left) // 60):
+        for distance in ticks(self.start, self.end, (self.right - self.left) // 60):
             x, _ = self.at(distance, self.low)
             label = f"{distance / 1000.0:g} km" if kilometres else f"{distance:g} m"
             parts.append(f"<text x='{x:.1f}' y='{_BOTTOM + 18}' text-anchor='middle'>{label}</text>")
         return "".join(parts)
-
-
-def _ticks(low, high, most):
-    """Round numbers between low and high, at most `most` steps."""
-    raw = (high - low) / most
-    power = 10.0 ** math.floor(math.log10(raw))
-    step = next(power * factor for factor in (1, 2, 5, 10) if power * factor >= raw)
-    first, last = math.ceil(low / step), math.floor(high / step)
-    return [round(index * step, 10) for index in range(first, last + 1)]
 
 
 def _stretches(places):

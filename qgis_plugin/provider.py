@@ -13,6 +13,7 @@ from .algorithms.dem_to_tin import DemToTin
 from .algorithms.error_surfaces import ErrorSurfaces
 from .algorithms.line_of_sight_profile import LineOfSightProfile
 from .algorithms.subtract_observer import SubtractObserver
+from .algorithms.verify_tin import VerifyTin
 from .algorithms.volume_targets import VolumeTargets
 from .algorithms.volume_to_raster import VolumeToRaster
 from .algorithms.volume_viewshed import VolumeViewshed
@@ -28,6 +29,7 @@ _ALGORITHMS = (
     SubtractObserver,
     VolumeToRaster,
     DemToTin,
+    VerifyTin,
 )
 
 

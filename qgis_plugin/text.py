@@ -2,7 +2,9 @@
 """What users read: translation, and the help texts that lie in help/."""
 
 import json
+from decimal import ROUND_CEILING, Context, Decimal
 from functools import lru_cache
+from math import isfinite
 from pathlib import Path
 
 from qgis.PyQt.QtCore import QCoreApplication
@@ -12,6 +14,11 @@ _HELP = Path(__file__).parent / "help"
 
 def tr(sentence):
     return QCoreApplication.translate("Sightbound", sentence)
+
+
+def upward(value):
+    """A bound with six digits, none of which is below it."""
+    return f"{Decimal(value).normalize(Context(prec=6, rounding=ROUND_CEILING)):f}" if isfinite(value) else str(value)
 
 
 @lru_cache(maxsize=None)

@@ -12,13 +12,8 @@ from qgis.core import (
 
 VISIBILITY = ("confidenceviewshed", "errorsurfaces", "lineofsightprofile")
 VOLUME = ("builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster")
-SIMPLIFICATION = ("demtotin",)
+SIMPLIFICATION = ("demtotin", "verifytin")
 ALGORITHMS = VISIBILITY + VOLUME + SIMPLIFICATION
-GROUPS = {
-    "visibility": ("Visibility", VISIBILITY),
-    "errorvolume": ("Error volume", VOLUME),
-    "simplification": ("Simplification", SIMPLIFICATION),
-}
 ERROR_BLOCK = """VERTICAL_ACCURACY VERTICAL_MEASURE GEOLOGIC_VARIATION HORIZONTAL_ACCURACY HORIZONTAL_MEASURE
     ERROR_RASTER GEOLOGIC_MODEL GEOLOGIC_RANGE GEOLOGIC_RASTER TERRAIN_TYPES TERRAIN_FIELD TERRAIN_TABLE
     ERROR_MODEL""".split()
@@ -83,8 +78,9 @@ def test_heights_and_limits_are_dynamic(provider):
 
 
 def test_every_algorithm_says_what_it_is(algorithm):
-    label, members = GROUPS[algorithm.groupId()]
-    assert algorithm.group() == label and algorithm.name() in members
+    groups = {"Visibility": VISIBILITY, "Error volume": VOLUME, "Simplification": SIMPLIFICATION}
+    assert algorithm.name() in groups[algorithm.group()]
+    assert algorithm.groupId() == algorithm.group().lower().replace(" ", "")
     assert algorithm.shortDescription() and algorithm.shortHelpString() and algorithm.helpUrl()
     assert len(algorithm.tags()) > 5
     assert Path(algorithm.svgIconPath()).is_file() and not algorithm.icon().isNull()
@@ -128,7 +124,8 @@ def test_dialog_hands_over_what_the_algorithm_accepts(algorithm, dem, observers,
 
     dialog = AlgorithmDialog(algorithm.create())
     file = "volume.vdb"  # the dialog looks at the ending alone
-    given = {"INPUT": dem, "OBSERVERS": observers, "TARGETS": observers, "HIDDEN": file, "TOLERANCE": 1.0}
+    given = {"INPUT": dem, "OBSERVERS": observers, "TARGETS": observers, "HIDDEN": file}
+    given |= {"SIMPLIFIED_TIN": observers, "TOLERANCE": 1.0}
     if algorithm.parameterDefinition("INPUT").type() == "file":
         given["INPUT"] = file
     dialog.setParameters(
