@@ -3,6 +3,7 @@
 
 import ast
 import configparser
+import json
 import re
 
 import pytest
@@ -69,3 +70,12 @@ UNSCOPED = re.compile(
 @pytest.mark.parametrize("source", SOURCES, ids=lambda one: one.name)
 def test_enums_are_scoped(source):
     assert UNSCOPED.findall(source.read_text(encoding="utf-8")) == []
+
+
+def test_no_help_text_takes_the_place_of_another():
+    def once(pairs):
+        names = [name for name, _ in pairs]
+        assert sorted(set(names)) == sorted(names)
+        return dict(pairs)
+
+    json.loads((FOLDER / "help" / "parameters.json").read_text(encoding="utf-8"), object_pairs_hook=once)
