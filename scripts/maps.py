@@ -153,7 +153,7 @@ def utm_of(layer):
     return QgsCoordinateReferenceSystem.fromEpsgId((32600 if centre.y() >= 0.0 else 32700) + zone)
 
 
-def write_page(path, title, panels, legend_layers, width_mm=300.0, legend_mm=58.0, footer="", window=(0.025, 0.025, 0.975, 0.975)):
+def write_page(path, title, panels, legend_layers, width_mm=300.0, legend_mm=58.0, footer="", window=(0.025, 0.025, 0.975, 0.975), bar_km=5.0):
     """Panels side by side, the legend at the right, a scale bar below; PNG at `path`. The maps show `window` of the lowest
     layer (left, bottom, right, top as shares of its extent; the slanted edges of a reprojected raster stay outside)."""
     project = QgsProject.instance()
@@ -191,7 +191,7 @@ def write_page(path, title, panels, legend_layers, width_mm=300.0, legend_mm=58.
         if panel.caption:
             _label(layout, panel.caption, x, above + high + 1.5, each, 12.0, 9)
         if i == 0:
-            _scale_bar(layout, view, margin, above + high + 12.0)
+            _scale_bar(layout, view, margin, above + high + 12.0, bar_km)
     if footer:
         _label(layout, footer, margin + 0.45 * width_mm, above + high + 15.0, 0.55 * width_mm - 2 * margin, 8.0, 7.5)
     _legend(layout, legend_layers, width_mm - margin - legend_mm, above - 2.0)
@@ -215,14 +215,14 @@ def _label(layout, text, x, y, width, height, size, bold=False):
     item.attemptResize(QgsLayoutSize(width, height, MM))
 
 
-def _scale_bar(layout, view, x, y):
+def _scale_bar(layout, view, x, y, segment_km):
     bar = QgsLayoutItemScaleBar(layout)
     layout.addLayoutItem(bar)
     bar.setLinkedMap(view)
     bar.setStyle("Single Box")
     bar.setUnits(QgsUnitTypes.DistanceUnit.DistanceKilometers)
     bar.setUnitLabel("km")
-    bar.setUnitsPerSegment(5.0)
+    bar.setUnitsPerSegment(segment_km)
     bar.setNumberOfSegments(2)
     bar.setNumberOfSegmentsLeft(0)
     bar.setHeight(2.0)
