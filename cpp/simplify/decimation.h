@@ -2,8 +2,7 @@
 // Edge collapses within the envelope, cheapest first, tile by tile.
 //
 // A pass cuts the plane into square tiles; vertices of triangles that reach over a tile's edge stay as they
-// are, so that tiles do not see each other. The next pass has its tiles elsewhere, and a higher cost up to
-// which it goes: no seam is ever far behind.
+// are, so that tiles do not see each other. The next pass has its tiles elsewhere.
 #pragma once
 
 #include <cstdint>
@@ -14,37 +13,46 @@
 #include "base/progress.h"
 #include "simplify/envelope.h"
 #include "simplify/plan_mesh.h"
+#include "simplify/quadric.h"
 
 namespace sightbound {
 
 struct PassPlan {
-  int tile = 256;                // cells a side
-  int shift_x = 0, shift_y = 0;  // cells
-  double cost_limit = std::numeric_limits<double>::infinity();
-  std::size_t most_faces =
-      std::numeric_limits<std::size_t>::max();  // that each tile may lose, give or take 1
+  int tile = 128;                                                    // cells a side
+  int shift_x = 0, shift_y = 0;                                      // of the tiles, cells
+  std::size_t most_faces = std::numeric_limits<std::size_t>::max();  // that a tile may lose, give or take 1
+  double share = 0;                                                  // of `progress`
 };
-
-// Seams wander from pass to pass; the last passes take what is left. With a number of faces to lose all of
-// the plane is one tile: only then the cheapest go first everywhere.
-std::vector<PassPlan> pass_plans(std::size_t faces_to_lose = 0);
 
 class Decimation {
  public:
   Decimation(PlanMesh& mesh, const Envelope& envelope);
 
-  // Returns how many faces went.
+  // Returns how many faces went. Advances `progress` by the plan's share.
   std::size_t pass(const PassPlan& plan, const Workers& workers, Progress& progress);
 
  private:
   friend class TileDecimation;
 
+  // Of a vertex. Tiles write to their own alone.
+  struct State {
+    std::uint32_t moves = 0;
+    std::int32_t tile = 0;
+    std::uint16_t changed =
+        0;                // the last pass that changed something around it, or left an edge of it untested
+    bool frozen = false;  // in this pass
+  };
+
+  void assign_tiles(const PassPlan& plan);
+  void freeze_seams();
+
   PlanMesh& mesh_;
   const Envelope& envelope_;
-  std::vector<std::uint32_t> moves_;   // of a vertex, and of each of its edges put to the test
-  std::vector<std::uint8_t> changed_;  // something around the vertex, since its edges were last tested
-  std::vector<std::uint8_t> frozen_;   // for this pass
-  std::vector<std::int32_t> tile_of_;
+  std::vector<State> states_;
+  std::vector<Quadric> quadrics_;  // of vertices
+  std::uint16_t pass_ = 0;
+  // Vertices by tile: those of tile t are members_[begin_[t]] to members_[begin_[t + 1]].
+  std::vector<std::int32_t> begin_, members_;
 };
 
 }  // namespace sightbound

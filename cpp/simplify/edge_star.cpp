@@ -7,8 +7,6 @@ namespace sightbound {
 
 namespace {
 
-Point place_of(const PlanMesh& mesh, std::int32_t v) { return {mesh.x(v), mesh.y(v), mesh.z(v)}; }
-
 // May a vertex be drawn into one that is of no lower kind?
 bool may_go(VertexKind kind, bool outline_edge) {
   switch (kind) {
@@ -42,13 +40,14 @@ bool append(const PlanMesh& mesh, std::int32_t corner, std::int32_t end, EdgeSta
 
 }  // namespace
 
-bool gather(const PlanMesh& mesh, std::int32_t corner, EdgeStar& star) {
+bool gather(const PlanMesh& mesh, std::int32_t corner, bool prefer_next, EdgeStar& star) {
   constexpr std::int32_t kNone = PlanMesh::kNone;
   std::int32_t other = turned(mesh, corner);
   const bool outline_edge = other == kNone;
   const auto kind = [&](std::int32_t c) { return mesh.kind(mesh.vertex(c)); };
   bool a_is_next = false;  // of an edge of the outline, whose only triangle fixes the direction
-  if (kind(PlanMesh::next(corner)) > kind(corner)) {
+  const VertexKind one = kind(corner), next = kind(PlanMesh::next(corner));
+  if (next > one || (next == one && prefer_next)) {
     if (outline_edge) {
       a_is_next = true;
     } else {
@@ -121,10 +120,10 @@ bool gather(const PlanMesh& mesh, std::int32_t corner, EdgeStar& star) {
     }
   }
   for (int i = 0; i < star.size; ++i)
-    star.at[static_cast<std::size_t>(i)] = place_of(mesh, star.ring[static_cast<std::size_t>(i)]);
+    star.at[static_cast<std::size_t>(i)] = mesh.place(star.ring[static_cast<std::size_t>(i)]);
   if (star.closed) star.at[static_cast<std::size_t>(star.size)] = star.at[0];
-  star.place_a = place_of(mesh, star.a);
-  star.place_b = place_of(mesh, star.b);
+  star.place_a = mesh.place(star.a);
+  star.place_b = mesh.place(star.b);
   return true;
 }
 

@@ -9,16 +9,6 @@
 
 namespace sightbound {
 
-struct Point {
-  double x = 0, y = 0, z = 0;  // columns, rows, metres
-};
-
-inline double cross(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
-// Twice the plan area of a, b, c; positive when counterclockwise.
-inline double area2(const Point& a, const Point& b, const Point& c) {
-  return cross(b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y);
-}
-
 // The ring is counterclockwise. It is closed when the edge's ends lie inside, else it runs from one neighbour
 // on the outline to the other.
 struct EdgeStar {
@@ -40,9 +30,9 @@ struct EdgeStar {
   bool belongs_to_b(int side) const { return side >= b_begin && side < b_end; }
 };
 
-// False when the edge must not be collapsed, whatever the heights: its ends are both on the outline or both
-// fixed, a third triangle would be folded onto another one, the ring is too long. The vertex of the higher
-// kind becomes a.
-bool gather(const PlanMesh& mesh, std::int32_t corner, EdgeStar& star);
+// Vertex a is the end of the higher kind; of two of one kind, next(corner)'s when that is preferred. False
+// when the edge must not be collapsed, whatever the heights: its ends are both on the outline or both fixed,
+// a third triangle would be folded onto another one, the ring is too long.
+bool gather(const PlanMesh& mesh, std::int32_t corner, bool prefer_next, EdgeStar& star);
 
 }  // namespace sightbound

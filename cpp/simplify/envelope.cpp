@@ -9,19 +9,19 @@ namespace sightbound {
 
 Envelope::Envelope(const Original& original) : original_(original), margin_(2 * original.rounding()) {}
 
-HeightInterval Envelope::heights_for(const EdgeStar& star, const Point& p) const {
-  return original_.varying() ? find<true>(star, p) : find<false>(star, p);
+HeightInterval Envelope::heights_for(const EdgeStar& star, const Point& p, double most) const {
+  return original_.varying() ? find<true>(star, p, most) : find<false>(star, p, most);
 }
 
 template <bool kVarying>
-HeightInterval Envelope::find(const EdgeStar& star, const Point& p) const {
+HeightInterval Envelope::find(const EdgeStar& star, const Point& p, double most) const {
   const Original::Local here = original_.under<kVarying>(p);
   HeightInterval z{here.height - here.tolerance + margin_, here.height + here.tolerance - margin_};
-  for (int i = 0; i < star.sides() && !z.empty(); ++i) {
+  for (int i = 0; i < star.sides() && z.missing() <= most; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    narrow_inside<kVarying>(star.at[n], star.at[n + 1], p, z);
+    narrow_inside<kVarying>(star.at[n], star.at[n + 1], p, most, z);
   }
-  for (int i = 0; i < star.size && !z.empty(); ++i) {
+  for (int i = 0; i < star.size && z.missing() <= most; ++i) {
     narrow_along<kVarying>(star.at[static_cast<std::size_t>(i)], p, z);
   }
   return z;
@@ -42,10 +42,11 @@ void Envelope::narrow_along(const Point& v, const Point& p, HeightInterval& z) c
 // Samples in the triangle a, b, p, its edge a b excepted. At a sample s: e = area (a, b, s) and f = area (p,
 // a, s), doubled; e / area is the weight of p, f / area that of b. All three are exact.
 template <bool kVarying>
-void Envelope::narrow_inside(const Point& a, const Point& b, const Point& p, HeightInterval& z) const {
-  const double area = area2(a, b, p), rise = (b.z - a.z) / area;
+void Envelope::narrow_inside(const Point& a, const Point& b, const Point& p, double most,
+                             HeightInterval& z) const {
+  const double area = area2(a, b, p), per_area = 1 / area, rise = (b.z - a.z) * per_area;
   const double ex = a.y - b.y, ey = b.x - a.x, fx = p.y - a.y, fy = a.x - p.x;
-  double low = (z.low - a.z) / area, high = (z.high - a.z) / area;  // per unit of e
+  double low = (z.low - a.z) * per_area, high = (z.high - a.z) * per_area;  // per unit of e
   Original::for_samples(a, b, p, [&](int row, int begin, int end) {
     const float* height = original_.heights(row);
     const float* tolerance = kVarying ? original_.tolerances(row) : nullptr;
@@ -58,7 +59,7 @@ void Envelope::narrow_inside(const Point& a, const Point& b, const Point& p, Hei
       if (d - allowed > e * low) low = (d - allowed) / e;
       if (d + allowed < e * high) high = (d + allowed) / e;
     }
-    return low <= high;
+    return low - high <= most * per_area;
   });
   z = {a.z + low * area, a.z + high * area};
 }

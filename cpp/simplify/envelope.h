@@ -17,7 +17,7 @@ namespace sightbound {
 struct HeightInterval {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
 
-  bool empty() const { return !(low <= high); }
+  double missing() const { return low - high; }  // positive when empty
 };
 
 class Envelope {
@@ -26,17 +26,19 @@ class Envelope {
   explicit Envelope(const Original& original);
 
   // The heights that p (of which x and y count) may have so that the triangles from it to the sides of the
-  // star's ring lie in the envelope; the ring's own edges are taken to lie in it already. Stops early when
-  // empty. O(samples covered).
-  HeightInterval heights_for(const EdgeStar& star, const Point& p) const;
+  // star's ring lie in the envelope; the ring's own edges are taken to lie in it already. Stops when more
+  // than `most` is missing, with what it has found by then. O(samples covered).
+  HeightInterval heights_for(const EdgeStar& star, const Point& p, double most) const;
+
+  double tolerance_near(const Point& p) const { return original_.tolerance_near(p); }
 
  private:
   template <bool kVarying>
-  HeightInterval find(const EdgeStar& star, const Point& p) const;
+  HeightInterval find(const EdgeStar& star, const Point& p, double most) const;
   template <bool kVarying>
   void narrow_along(const Point& v, const Point& p, HeightInterval& z) const;
   template <bool kVarying>
-  void narrow_inside(const Point& a, const Point& b, const Point& p, HeightInterval& z) const;
+  void narrow_inside(const Point& a, const Point& b, const Point& p, double most, HeightInterval& z) const;
 
   const Original& original_;
   // Taken off the tolerance: once for the test, once for whoever checks it.

@@ -42,6 +42,13 @@ class Original {
     }
     return found;
   }
+  // At the sample nearest to a place, but not 0.
+  double tolerance_near(const Point& p) const {
+    constexpr double kLeast = 1e-9;
+    const double here =
+        varying() ? tolerance_.at(static_cast<int>(p.y + 0.5), static_cast<int>(p.x + 0.5)) : constant_;
+    return here > kLeast ? here : kLeast;
+  }
   // Anywhere in the footprint: samples that do not matter may be nodata.
   template <bool kVarying>
   Local under(const Point& p) const;
@@ -59,7 +66,12 @@ class Original {
  private:
   // Samples this far outside a triangle are counted as in it: none on its edges is lost to rounding.
   static constexpr double kSampleReach = 0x1p-30;  // cells
-  static double whole_above(double x) { return std::floor(x) + 1; }
+  // Of what is 0 or more, or less than one step below: columns and rows.
+  static int whole_from(double x) {
+    const int whole = static_cast<int>(x);
+    return whole + (whole < x ? 1 : 0);
+  }
+  static int whole_above(double x) { return static_cast<int>(x) + 1; }
 
   const Grid<float>& heights_;
   const Grid<float>& tolerance_;
@@ -90,26 +102,28 @@ void Original::for_crossings(const Point& a, const Point& b, const F& f) const {
   const int last_row = heights_.rows() - 2, last_col = heights_.cols() - 2;
   if (dx != 0) {
     const double step = 1 / dx;
-    for (double x = whole_above(std::min(a.x, b.x)), end = std::max(a.x, b.x); x < end; ++x) {
-      const double t = (x - a.x) * step, y = a.y + t * dy;
-      const int c = static_cast<int>(x), r = std::min(static_cast<int>(y), last_row);
+    const double end = std::max(a.x, b.x);
+    for (int c = whole_above(std::min(a.x, b.x)); c < end; ++c) {
+      const double t = (c - a.x) * step, y = a.y + t * dy;
+      const int r = std::min(static_cast<int>(y), last_row);
       f(between<kVarying>(r, c, r + 1, c, y - r), t);
     }
   }
   if (dy != 0) {
     const double step = 1 / dy;
-    for (double y = whole_above(std::min(a.y, b.y)), end = std::max(a.y, b.y); y < end; ++y) {
-      const double t = (y - a.y) * step, x = a.x + t * dx;
-      const int r = static_cast<int>(y), c = std::min(static_cast<int>(x), last_col);
+    const double end = std::max(a.y, b.y);
+    for (int r = whole_above(std::min(a.y, b.y)); r < end; ++r) {
+      const double t = (r - a.y) * step, x = a.x + t * dx;
+      const int c = std::min(static_cast<int>(x), last_col);
       f(between<kVarying>(r, c, r, c + 1, x - c), t);
     }
   }
   const double before = a.y - a.x, after = b.y - b.x;  // of diagonals: row less column
   if (before != after) {
     const double step = 1 / (after - before);
-    for (double k = whole_above(std::min(before, after)), end = std::max(before, after); k < end; ++k) {
-      const double t = (k - before) * step, x = a.x + t * dx;
-      const int down = static_cast<int>(k);
+    const double end = std::max(before, after);
+    for (int down = static_cast<int>(std::floor(std::min(before, after))) + 1; down < end; ++down) {
+      const double t = (down - before) * step, x = a.x + t * dx;
       const int c = std::clamp(static_cast<int>(x), std::max(0, -down), std::min(last_col, last_row - down));
       f(between<kVarying>(c + down, c, c + down + 1, c + 1, x - c), t);
     }
@@ -122,18 +136,18 @@ void Original::for_samples(const Point& a, const Point& b, const Point& c, const
   if (middle->y < top->y) std::swap(middle, top);
   if (bottom->y < middle->y) std::swap(bottom, middle);
   if (middle->y < top->y) std::swap(middle, top);
-  const double first = std::ceil(top->y);
-  if (first > bottom->y) return;
+  const int first = whole_from(top->y), last = static_cast<int>(bottom->y);
+  if (first > last) return;
   const auto slope = [](const Point& s, const Point& t) {
     return t.y > s.y ? (t.x - s.x) / (t.y - s.y) : 0.0;
   };
   const double along = slope(*top, *bottom), upper = slope(*top, *middle), lower = slope(*middle, *bottom);
-  for (double y = first; y <= bottom->y; ++y) {
+  for (int y = first; y <= last; ++y) {
     const double one = top->x + (y - top->y) * along;
     const double other = y < middle->y ? top->x + (y - top->y) * upper : middle->x + (y - middle->y) * lower;
-    const int begin = static_cast<int>(std::ceil(std::min(one, other) - kSampleReach));
-    const int end = static_cast<int>(std::floor(std::max(one, other) + kSampleReach)) + 1;
-    if (begin < end && !f(static_cast<int>(y), begin, end)) return;
+    const int begin = whole_from(std::min(one, other) - kSampleReach);
+    const int end = static_cast<int>(std::max(one, other) + kSampleReach) + 1;
+    if (begin < end && !f(y, begin, end)) return;
   }
 }
 

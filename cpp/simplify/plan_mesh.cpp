@@ -13,10 +13,8 @@ PlanMesh::PlanMesh(const Grid<float>& heights) {
     std::int32_t& n =
         number[static_cast<std::size_t>(r) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(c)];
     if (n == kNone) {
-      n = static_cast<std::int32_t>(z_.size());
-      x_.push_back(c * kStepsPerCell);
-      y_.push_back(r * kStepsPerCell);
-      z_.push_back(heights.at(r, c));
+      n = static_cast<std::int32_t>(vertices_.size());
+      vertices_.push_back({heights.at(r, c), c * kStepsPerCell, r * kStepsPerCell});
     }
     return n;
   };
@@ -28,11 +26,12 @@ PlanMesh::PlanMesh(const Grid<float>& heights) {
     for (int c = 0; c + 1 < cols; ++c) {
       const bool ends = there(r, c) && there(r + 1, c + 1);
       const auto add = [&](int r1, int c1, int r2, int c2) {
-        const auto corner = static_cast<std::int32_t>(vertex_.size());
+        const auto corner = static_cast<std::int32_t>(corners_.size());
         for (const std::int32_t v : {vertex_at(r, c), vertex_at(r1, c1), vertex_at(r2, c2)}) {
-          vertex_.push_back(v);
-          opposite_.push_back(kNone);
+          vertices_[at(v)].corner = static_cast<std::int32_t>(corners_.size());
+          corners_.push_back({v, kNone});
         }
+        corners_.emplace_back();
         return corner;
       };
       std::int32_t upper = kNone, lower = kNone;
@@ -46,16 +45,13 @@ PlanMesh::PlanMesh(const Grid<float>& heights) {
       over = lower;
     }
   }
-  corner_.assign(z_.size(), kNone);
-  for (std::size_t c = vertex_.size(); c-- > 0;) corner_[at(vertex_[c])] = static_cast<std::int32_t>(c);
-  kind_.assign(z_.size(), VertexKind::kInside);
   find_kinds();
   split_touching();
 }
 
 std::size_t PlanMesh::count_faces() const {
   std::size_t count = 0;
-  for (std::size_t c = 0; c < vertex_.size(); c += 3) count += vertex_[c] != kNone ? 1 : 0;
+  for (std::size_t c = 0; c < corners_.size(); c += 4) count += corners_[c].vertex != kNone ? 1 : 0;
   return count;
 }
 
@@ -90,11 +86,11 @@ void PlanMesh::collapse(std::int32_t corner, std::int32_t kept) {
   const std::int32_t first = first_corner(gone);
   for (std::int32_t c = first;;) {
     const std::int32_t after = counterclockwise(c);
-    vertex_[at(c)] = kept;
+    corners_[at(c)].vertex = kept;
     if (after == kNone || after == first) break;
     c = after;
   }
-  corner_[at(gone)] = kNone;
+  vertices_[at(gone)].corner = kNone;
   remove_triangle(left);
   if (right != kNone) remove_triangle(right);
 }
@@ -103,41 +99,43 @@ void PlanMesh::collapse(std::int32_t corner, std::int32_t kept) {
 void PlanMesh::remove_triangle(std::int32_t apex) {
   const std::int32_t tip = vertex(apex), kept = vertex(next(apex));
   const std::int32_t one = opposite(next(apex)), other = opposite(previous(apex));
-  if (one != kNone) opposite_[at(one)] = other;
-  if (other != kNone) opposite_[at(other)] = one;
+  if (one != kNone) corners_[at(one)].opposite = other;
+  if (other != kNone) corners_[at(other)].opposite = one;
   // Across the edge from tip to kept, seen from `one` and `other`.
   const std::int32_t beside = one != kNone ? one : other;
   const bool turned = vertex(next(beside)) == tip;
-  corner_[at(tip)] = turned ? next(beside) : previous(beside);
-  corner_[at(kept)] = turned ? previous(beside) : next(beside);
+  vertices_[at(tip)].corner = turned ? next(beside) : previous(beside);
+  vertices_[at(kept)].corner = turned ? previous(beside) : next(beside);
   for (const std::int32_t c : {apex, next(apex), previous(apex)}) {
-    vertex_[at(c)] = opposite_[at(c)] = kNone;
+    corners_[at(c)] = {};
   }
 }
 
 void PlanMesh::join(std::int32_t a, std::int32_t b) {
-  opposite_[at(a)] = b;
-  opposite_[at(b)] = a;
+  corners_[at(a)].opposite = b;
+  corners_[at(b)].opposite = a;
 }
 
 // One that ends a straight piece of the outline is a corner.
 void PlanMesh::find_kinds() {
-  for (std::int32_t v = 0; at(v) < z_.size(); ++v) {
+  for (std::int32_t v = 0; at(v) < vertices_.size(); ++v) {
     const std::int32_t first = first_corner(v);
     if (!on_outline(first)) continue;
     std::int32_t last = first;
     for (std::int32_t c = first; c != kNone; c = counterclockwise(c)) last = c;
     const std::int32_t a = vertex(next(first)), b = vertex(previous(last));
-    const double ax = x(a) - x(v), ay = y(a) - y(v), bx = x(b) - x(v), by = y(b) - y(v);
-    const bool straight = ax * by - ay * bx == 0 && ax * bx + ay * by < 0;
-    kind_[at(v)] = straight ? VertexKind::kOutline : VertexKind::kCorner;
+    const Point p = place(v), p_a = place(a), p_b = place(b);
+    const bool ahead = (p_a.x - p.x) * (p_b.x - p.x) + (p_a.y - p.y) * (p_b.y - p.y) < 0;
+    set_kind(v, ahead && area2(p, p_a, p_b) == 0 ? VertexKind::kOutline : VertexKind::kCorner);
   }
 }
 
 // A sample of several fans of triangles becomes a vertex of each, and none of them moves.
 void PlanMesh::split_touching() {
-  std::vector<std::uint8_t> corners(z_.size(), 0);
-  for (const std::int32_t v : vertex_) ++corners[at(v)];
+  std::vector<std::uint8_t> corners(vertices_.size(), 0);
+  for (const Corner& corner : corners_) {
+    if (corner.vertex != kNone) ++corners[at(corner.vertex)];
+  }
   const auto for_fan = [&](std::int32_t vertex, const auto& f) {
     const std::int32_t first = first_corner(vertex);
     std::int32_t c = first;
@@ -147,24 +145,23 @@ void PlanMesh::split_touching() {
       c = after;
     } while (c != kNone && c != first);
   };
-  const std::size_t samples = z_.size();
+  const std::size_t samples = vertices_.size();
   first_twin_ = static_cast<std::int32_t>(samples);
   for (std::size_t v = 0; v < samples; ++v) {
     for_fan(static_cast<std::int32_t>(v), [&](std::int32_t) { --corners[v]; });
   }
-  for (std::size_t c = 0; c < vertex_.size(); ++c) {
-    const std::int32_t v = vertex_[c];
-    if (at(v) >= samples || corners[at(v)] == 0) continue;
+  for (std::size_t c = 0; c < corners_.size(); ++c) {
+    const std::int32_t v = corners_[c].vertex;
+    if (v == kNone || at(v) >= samples || corners[at(v)] == 0) continue;
     bool of_first_fan = false;
     for_fan(v, [&](std::int32_t k) { of_first_fan |= k == static_cast<std::int32_t>(c); });
     if (of_first_fan) continue;
-    const auto twin = static_cast<std::int32_t>(z_.size());
-    x_.push_back(x_[at(v)]), y_.push_back(y_[at(v)]), z_.push_back(z_[at(v)]);
-    kind_.push_back(VertexKind::kFixed);
+    const auto twin = static_cast<std::int32_t>(samples + twins_.size());
     twins_.push_back(v);
-    corner_.push_back(static_cast<std::int32_t>(c));
-    for_fan(twin, [&](std::int32_t k) { vertex_[at(k)] = twin; });
-    kind_[at(v)] = VertexKind::kFixed;
+    set_kind(v, VertexKind::kFixed);
+    vertices_.push_back(vertices_[at(v)]);
+    vertices_.back().corner = static_cast<std::int32_t>(c);
+    for_fan(twin, [&](std::int32_t k) { corners_[at(k)].vertex = twin; });
   }
 }
 

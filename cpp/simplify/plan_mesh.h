@@ -5,7 +5,7 @@
 // doubles made of them are exact on rasters up to 65,536 cells a side, so that no orientation is ever in
 // doubt.
 //
-// A corner table: triangle t has the corners 3 t, 3 t + 1, 3 t + 2, counterclockwise where columns run right
+// A corner table: triangle t has the corners 4 t, 4 t + 1, 4 t + 2, counterclockwise where columns run right
 // and rows run up. opposite(c) is the corner across the edge that lies opposite to c.
 #pragma once
 
@@ -28,6 +28,16 @@ enum class VertexKind : std::uint8_t {
   kFixed,    // nothing
 };
 
+struct Point {
+  double x = 0, y = 0, z = 0;  // columns, rows, metres
+};
+
+inline double cross(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
+// Twice the plan area of a, b, c; positive when counterclockwise.
+inline double area2(const Point& a, const Point& b, const Point& c) {
+  return cross(b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y);
+}
+
 class PlanMesh {
  public:
   static constexpr std::int32_t kNone = -1;
@@ -35,17 +45,17 @@ class PlanMesh {
   // The regular TIN of a DEM. Where parts touch in one sample only, it becomes a vertex of each.
   explicit PlanMesh(const Grid<float>& heights);
 
-  std::size_t vertices() const { return z_.size(); }  // removed ones included
-  std::size_t triangles() const { return vertex_.size() / 3; }
+  std::size_t vertices() const { return vertices_.size(); }  // removed ones included
+  std::size_t triangles() const { return corners_.size() / 4; }
   std::size_t count_faces() const;  // those not removed
 
-  static std::int32_t next(std::int32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-  static std::int32_t previous(std::int32_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
-  std::int32_t vertex(std::int32_t corner) const { return vertex_[at(corner)]; }
-  std::int32_t opposite(std::int32_t corner) const { return opposite_[at(corner)]; }
+  static std::int32_t next(std::int32_t corner) { return (corner & 3) == 2 ? corner - 2 : corner + 1; }
+  static std::int32_t previous(std::int32_t corner) { return (corner & 3) == 0 ? corner + 2 : corner - 1; }
+  std::int32_t vertex(std::int32_t corner) const { return corners_[at(corner)].vertex; }
+  std::int32_t opposite(std::int32_t corner) const { return corners_[at(corner)].opposite; }
   // Some corner at a vertex; kNone = removed.
-  std::int32_t corner_of(std::int32_t vertex) const { return corner_[at(vertex)]; }
-  bool alive(std::int32_t triangle) const { return vertex_[at(3 * triangle)] != kNone; }
+  std::int32_t corner_of(std::int32_t vertex) const { return vertices_[at(vertex)].corner; }
+  bool alive(std::int32_t triangle) const { return corners_[at(4 * triangle)].vertex != kNone; }
   // The next corner round the same vertex; kNone = the outline lies between.
   std::int32_t counterclockwise(std::int32_t corner) const {
     const std::int32_t across = opposite(next(corner));
@@ -59,25 +69,46 @@ class PlanMesh {
   std::int32_t first_corner(std::int32_t vertex) const;
   // The corner at a whose next is b, kNone = there is none.
   std::int32_t corner_towards(std::int32_t a, std::int32_t b) const;
+  // A corner at one of a and b whose next is at the other; kNone = they are no neighbours.
+  std::int32_t edge(std::int32_t a, std::int32_t b) const {
+    const std::int32_t corner = corner_towards(a, b);
+    return corner != kNone ? corner : corner_towards(b, a);
+  }
 
   // The vertex at the very same place that a touching part has of it; itself as a rule.
   std::int32_t twin_of(std::int32_t vertex) const;
 
-  std::int32_t step_x(std::int32_t vertex) const { return x_[at(vertex)]; }
-  std::int32_t step_y(std::int32_t vertex) const { return y_[at(vertex)]; }
-  double x(std::int32_t vertex) const { return x_[at(vertex)] * (1.0 / kStepsPerCell); }
-  double y(std::int32_t vertex) const { return y_[at(vertex)] * (1.0 / kStepsPerCell); }
-  double z(std::int32_t vertex) const { return z_[at(vertex)]; }
-  VertexKind kind(std::int32_t vertex) const { return kind_[at(vertex)]; }
-  void set_kind(std::int32_t vertex, VertexKind kind) { kind_[at(vertex)] = kind; }
+  std::int32_t step_x(std::int32_t vertex) const { return vertices_[at(vertex)].x; }
+  std::int32_t step_y(std::int32_t vertex) const { return vertices_[at(vertex)].y; }
+  Point place(std::int32_t vertex) const {
+    constexpr double kCell = 1.0 / kStepsPerCell;
+    const Vertex& v = vertices_[at(vertex)];
+    return {v.x * kCell, v.y * kCell, v.z};
+  }
+  VertexKind kind(std::int32_t vertex) const { return vertices_[at(vertex)].kind; }
+  void set_kind(std::int32_t vertex, VertexKind kind) { vertices_[at(vertex)].kind = kind; }
 
-  void move(std::int32_t vertex, std::int32_t step_x, std::int32_t step_y, double z) {
-    x_[at(vertex)] = step_x, y_[at(vertex)] = step_y, z_[at(vertex)] = z;
+  // To a place on the lattice of steps.
+  void move(std::int32_t vertex, const Point& to) {
+    Vertex& v = vertices_[at(vertex)];
+    v.x = static_cast<std::int32_t>(to.x * kStepsPerCell);
+    v.y = static_cast<std::int32_t>(to.y * kStepsPerCell);
+    v.z = to.z;
   }
   // Draws the edge from a corner's vertex to its next's together: `kept` is one of the two, the other goes.
   void collapse(std::int32_t corner, std::int32_t kept);
 
  private:
+  struct Corner {
+    std::int32_t vertex = kNone, opposite = kNone;
+  };
+  struct Vertex {
+    double z;
+    std::int32_t x, y;  // steps
+    std::int32_t corner = kNone;
+    VertexKind kind = VertexKind::kInside;
+  };
+
   static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
   void join(std::int32_t a, std::int32_t b);
   void remove_triangle(std::int32_t apex);
@@ -85,10 +116,8 @@ class PlanMesh {
   void find_kinds();
   bool on_outline(std::int32_t first_corner) const { return opposite(previous(first_corner)) == kNone; }
 
-  std::vector<std::int32_t> vertex_, opposite_;  // of corners
-  std::vector<std::int32_t> corner_, x_, y_;     // of vertices
-  std::vector<double> z_;
-  std::vector<VertexKind> kind_;
+  std::vector<Corner> corners_;
+  std::vector<Vertex> vertices_;
   std::int32_t first_twin_ = 0;      // vertices from here on are
   std::vector<std::int32_t> twins_;  // those of these
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simplify/simplify.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -65,19 +66,35 @@ void fix(PlanMesh& mesh, const SimplifyOptions& options) {
   }
 }
 
-void decimate(PlanMesh& mesh, const Original& original, std::size_t faces_to_lose, const Workers& workers,
-              Progress& progress) {
+// Tiles wander, so that what lies at a seam in one pass lies inside a tile in another; after four passes
+// nothing has always been at a seam, and further ones gain little.
+void decimate(PlanMesh& mesh, const Original& original, const Workers& workers, Progress& progress) {
+  constexpr std::array<std::array<int, 2>, 4> kShifts{
+      {{0, 0}, {2, 2}, {0, 2}, {2, 0}}};  // quarters of a tile
+  constexpr std::array<double, 4> kShares{0.8, 0.1, 0.05, 0.05};
   const Envelope envelope(original);
   Decimation decimation(mesh, envelope);
-  for (const PassPlan& plan : pass_plans(faces_to_lose)) decimation.pass(plan, workers, progress);
+  for (std::size_t n = 0; n < kShifts.size(); ++n) {
+    PassPlan plan{.share = kShares[n]};
+    plan.shift_x = kShifts[n][0] * plan.tile / 4;
+    plan.shift_y = kShifts[n][1] * plan.tile / 4;
+    decimation.pass(plan, workers, progress);
+  }
+}
+
+// All of the plane is one tile: only then the cheapest go first everywhere.
+void decimate_to(std::size_t target, std::size_t faces, PlanMesh& mesh, const Original& original,
+                 const Workers& workers, Progress& progress) {
+  if (target >= faces) return;
+  const Envelope envelope(original);
+  Decimation(mesh, envelope)
+      .pass({.tile = kMostCells, .most_faces = faces - target, .share = 1}, workers, progress);
 }
 
 float rounded_up(double value) {
   const auto near = static_cast<float>(value);
   return near < value ? std::nextafter(near, std::numeric_limits<float>::infinity()) : near;
 }
-
-Point place_of(const PlanMesh& mesh, std::int32_t v) { return {mesh.x(v), mesh.y(v), mesh.z(v)}; }
 
 // What the mesh has become, with the largest deviation on each face.
 void write(const PlanMesh& mesh, const DemTerrain& terrain, const Original& original, SimplifiedTin& result) {
@@ -92,8 +109,9 @@ void write(const PlanMesh& mesh, const DemTerrain& terrain, const Original& orig
     std::int32_t& n = number[static_cast<std::size_t>(mesh.twin_of(v))];
     if (n == PlanMesh::kNone) {
       n = static_cast<std::int32_t>(tin.vertices.size());
-      const Xy p = map.of_sample(mesh.x(v), mesh.y(v));
-      tin.vertices.push_back(tin.from_crs({p.x, p.y, mesh.z(v)}));
+      const Point place = mesh.place(v);
+      const Xy p = map.of_sample(place.x, place.y);
+      tin.vertices.push_back(tin.from_crs({p.x, p.y, place.z}));
     }
     return n;
   };
@@ -103,10 +121,10 @@ void write(const PlanMesh& mesh, const DemTerrain& terrain, const Original& orig
   TinAttribute deviation{"deviation", {}};
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles()); ++t) {
     if (!mesh.alive(t)) continue;
-    const std::int32_t a = mesh.vertex(3 * t), b = mesh.vertex(3 * t + 1), c = mesh.vertex(3 * t + 2);
+    const std::int32_t a = mesh.vertex(4 * t), b = mesh.vertex(4 * t + 1), c = mesh.vertex(4 * t + 2);
     const std::int32_t first = vertex_of(a), second = vertex_of(b), third = vertex_of(c);
     tin.faces.push_back(mirrored ? Face{first, second, third} : Face{first, third, second});
-    const Deviation off = deviation_of(original, place_of(mesh, a), place_of(mesh, b), place_of(mesh, c));
+    const Deviation off = deviation_of(original, mesh.place(a), mesh.place(b), mesh.place(c));
     SimplifyReport& report = result.report;
     report.largest_deviation_m = std::max(report.largest_deviation_m, off.metres);
     report.largest_ratio = std::max(report.largest_ratio, off.ratio);
@@ -131,9 +149,11 @@ SimplifiedTin simplify_dem(const DemTerrain& terrain, const SimplifyOptions& opt
   if (result.report.faces_before == 0)
     throw InvalidInput("The DEM has no three samples side by side that are not nodata: it makes no surface.");
   fix(mesh, options);
-  const auto target = static_cast<std::size_t>(options.target_faces);
-  if (target < result.report.faces_before) {
-    decimate(mesh, original, target > 0 ? result.report.faces_before - target : 0, workers, progress);
+  if (options.target_faces > 0) {
+    decimate_to(static_cast<std::size_t>(options.target_faces), result.report.faces_before, mesh, original,
+                workers, progress);
+  } else {
+    decimate(mesh, original, workers, progress);
   }
   write(mesh, terrain, original, result);
   progress.finish();

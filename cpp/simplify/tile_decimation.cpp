@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/tile_decimation.h"
+
+namespace sightbound {
+
+namespace {
+
+constexpr std::size_t kCheckEvery = 1024;  // edges
+
+// f(corner, w) for each neighbour w of v; the corner is at one of the two, its next at the other.
+template <class F>
+void for_each_edge(const PlanMesh& mesh, std::int32_t v, const F& f) {
+  const std::int32_t first = mesh.first_corner(v);
+  for (std::int32_t corner = first;;) {
+    f(corner, mesh.vertex(PlanMesh::next(corner)));
+    const std::int32_t after = mesh.counterclockwise(corner);
+    if (after == PlanMesh::kNone) {
+      f(PlanMesh::previous(corner), mesh.vertex(PlanMesh::previous(corner)));
+      return;
+    }
+    if (after == first) return;
+    corner = after;
+  }
+}
+
+}  // namespace
+
+std::size_t TileDecimation::run(std::span<const std::int32_t> vertices, Progress& progress) {
+  for (const std::int32_t v : vertices) push_untested_edges(v);
+  Edge edge{};
+  for (std::size_t n = 0; faces_gone_ < plan_.most_faces && pop(edge); ++n) {
+    if (n % kCheckEvery == 0) progress.check();
+    try_collapse(corner_of(edge));
+  }
+  return faces_gone_;
+}
+
+void TileDecimation::push_untested_edges(std::int32_t v) {
+  const auto untested = [&](std::int32_t u) { return state(u).changed + 1 >= all_.pass_; };
+  for_each_edge(mesh_, v, [&](std::int32_t corner, std::int32_t w) {
+    if (v < w && (untested(v) || untested(w))) push(corner, v, w);
+  });
+}
+
+void TileDecimation::push_all_edges(std::int32_t v) {
+  for_each_edge(mesh_, v, [&](std::int32_t corner, std::int32_t w) { push(corner, v, w); });
+}
+
+void TileDecimation::push(std::int32_t corner, std::int32_t v, std::int32_t w) {
+  if (!in_tile(w) || (stays(v) && stays(w))) return;
+  const bool outline_edge = mesh_.opposite(PlanMesh::previous(corner)) == PlanMesh::kNone;
+  const std::int32_t a = mesh_.kind(w) > mesh_.kind(v) || stays(w) ? w : v;
+  const QuadricSum quadric = quadrics(v, w);
+  const Freedom free = freedom(a, outline_edge);
+  const double cost = [&] {
+    if (free == Freedom::kPlane) return quadric.cost(quadric.optimum());
+    const Point p = mesh_.place(a), q = mesh_.place(a == v ? w : v);
+    const double t = free == Freedom::kLine ? 0.5 : 0, x = p.x + t * (q.x - p.x), y = p.y + t * (q.y - p.y);
+    return quadric.cost({x, y, quadric.best_height(x, y)});
+  }();
+  const double tolerance = all_.envelope_.tolerance_near(mesh_.place(a));
+  queue_.push(static_cast<float>(cost / (tolerance * tolerance)),
+              {v, w, corner, state(v).moves + state(w).moves});
+}
+
+// The cheapest edge that still is what it was.
+bool TileDecimation::pop(Edge& edge) {
+  while (queue_.pop(edge)) {
+    if (mesh_.corner_of(edge.a) != PlanMesh::kNone && mesh_.corner_of(edge.b) != PlanMesh::kNone &&
+        state(edge.a).moves + state(edge.b).moves == edge.moves) {
+      return true;
+    }
+  }
+  return false;
+}
+
+QuadricSum TileDecimation::quadrics(std::int32_t v, std::int32_t w) {
+  return {all_.quadrics_[at(v)], mesh_.place(v), all_.quadrics_[at(w)], mesh_.place(w)};
+}
+
+// `a` being the end of the higher kind, or the one that stays.
+Freedom TileDecimation::freedom(std::int32_t a, bool outline_edge) {
+  if (stays(a)) return Freedom::kNone;
+  if (mesh_.kind(a) == VertexKind::kInside) return Freedom::kPlane;
+  return mesh_.kind(a) == VertexKind::kOutline && outline_edge ? Freedom::kLine : Freedom::kHeight;
+}
+
+std::int32_t TileDecimation::corner_of(const Edge& edge) const {
+  const std::int32_t one = mesh_.vertex(edge.corner);
+  if (one == edge.a || one == edge.b) {
+    const std::int32_t next = mesh_.vertex(PlanMesh::next(edge.corner));
+    if (next == (one == edge.a ? edge.b : edge.a)) return edge.corner;
+  }
+  return mesh_.edge(edge.a, edge.b);
+}
+
+void TileDecimation::try_collapse(std::int32_t corner) {
+  if (corner == PlanMesh::kNone) return;
+  const bool next_stays = stays(mesh_.vertex(PlanMesh::next(corner)));
+  if (!gather(mesh_, corner, next_stays, star_) || stays(star_.b)) return;
+  const QuadricSum quadric = quadrics(star_.a, star_.b);
+  const auto place = find_place(all_.envelope_, star_, quadric, freedom(star_.a, star_.right < 0));
+  if (place) collapse(*place, quadric);
+}
+
+void TileDecimation::collapse(const Point& to, const QuadricSum& quadric) {
+  const std::int32_t a = star_.a;
+  if (!stays(a)) mesh_.move(a, to);
+  mesh_.collapse(star_.corner, a);
+  faces_gone_ += star_.right < 0 ? 1 : 2;
+  all_.quadrics_[at(a)] = quadric.seen_from(to);
+  ++state(a).moves;
+  state(a).changed = all_.pass_;
+  for (int i = 0; i < star_.size; ++i) {
+    const std::int32_t v = star_.ring[at(i)];
+    if (in_tile(v)) state(v).changed = all_.pass_;
+  }
+  push_all_edges(a);
+}
+
+}  // namespace sightbound

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The collapses of one tile in one pass.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/progress.h"
+#include "simplify/bucket_queue.h"
+#include "simplify/decimation.h"
+#include "simplify/placement.h"
+
+namespace sightbound {
+
+class TileDecimation {
+ public:
+  TileDecimation(Decimation& all, std::int32_t tile, const PassPlan& plan)
+      : all_(all), mesh_(all.mesh_), tile_(tile), plan_(plan) {}
+
+  // Returns how many faces went. `vertices` are those of the tile.
+  std::size_t run(std::span<const std::int32_t> vertices, Progress& progress);
+
+ private:
+  struct Edge {
+    std::int32_t a, b;
+    std::int32_t corner;  // where the edge was then
+    std::uint32_t moves;  // of both ends when it was put in: it is out of date when they have moved since
+  };
+
+  static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+  Decimation::State& state(std::int32_t v) { return all_.states_[at(v)]; }
+  bool in_tile(std::int32_t v) { return state(v).tile == tile_; }
+  bool stays(std::int32_t v) { return state(v).frozen || mesh_.kind(v) == VertexKind::kFixed; }
+
+  void push_untested_edges(std::int32_t v);
+  void push_all_edges(std::int32_t v);
+  void push(std::int32_t corner, std::int32_t v, std::int32_t w);
+  bool pop(Edge& edge);
+  QuadricSum quadrics(std::int32_t v, std::int32_t w);
+  Freedom freedom(std::int32_t a, bool outline_edge);
+  std::int32_t corner_of(const Edge& edge) const;
+  void try_collapse(std::int32_t corner);
+  void collapse(const Point& to, const QuadricSum& quadric);
+
+  Decimation& all_;
+  PlanMesh& mesh_;
+  const std::int32_t tile_;
+  const PassPlan& plan_;
+  BucketQueue<Edge> queue_;
+  EdgeStar star_;
+  std::size_t faces_gone_ = 0;
+};
+
+}  // namespace sightbound
