@@ -31,8 +31,9 @@ struct EdgeStar {
 };
 
 // Vertex a is the end of the higher kind; of two of one kind, next(corner)'s when that is preferred. False
-// when the edge must not be collapsed, whatever the heights: its ends are both on the outline or both fixed,
-// a third triangle would be folded onto another one, the ring is too long.
+// when the edge must not be collapsed: b has to stay, or too much surrounds the edge. Where the ring meets
+// itself, it encloses triangles whose area a collapse would make 0 in all: whoever asks for positive areas
+// everywhere refuses it.
 bool gather(const PlanMesh& mesh, std::int32_t corner, bool prefer_next, EdgeStar& star);
 
 }  // namespace sightbound
