@@ -1,18 +1,31 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-#   benchmarks/simplify.sh [cells a side]     default: 1000
+#   benchmarks/simplify.sh        the figures of docs/performance.md, the simplifier
 #
-# Triangles against the true largest deviation on a fractal DEM: Sightbound, greedy insertion (wants python3-scipy), meshoptimizer (wants
-# libmeshoptimizer-dev); a picture of it in docs/images/ (wants python3-matplotlib). SIGHTBOUND_BENCH_DIR (default: a
-# folder in the system's temporary one) keeps the DEM between calls.
+# Simplifies a fractal DEM of 1000 x 1000 cells and the Jacksboro sample, each to three tolerances, exact everywhere; then weighs
+# triangles against the true largest deviation, beside greedy insertion (if Python has pydelatin) and meshoptimizer (if
+# libmeshoptimizer-dev is installed), with a picture (python3-matplotlib).
+# SIGHTBOUND_BENCH_DIR (default: a folder in the system's temporary one) keeps DEMs between calls.
 source "$(dirname "${BASH_SOURCE[0]}")/../scripts/setup.sh"
 
-build python_package
-export PYTHONPATH=$PWD/build/python
+build_folder=${SIGHTBOUND_BUILD:-build}
+cmake -B "$build_folder" -DSIGHTBOUND_BENCHMARKS=ON >/dev/null
+cmake --build "$build_folder" --target bench_simplify python_package
+bench=$build_folder/benchmarks/bench_simplify
+
 folder=${SIGHTBOUND_BENCH_DIR:-${TMPDIR:-/tmp}/sightbound-bench-$(id -u)}
 mkdir -p "$folder"
-size=${1:-1000}
-[ -f "$folder/fractal_$size.tif" ] || /usr/bin/python3 benchmarks/make_fractal_dem.py "$size" "$folder/fractal_$size.tif"
+fractal=$folder/fractal_1000.tif
+[ -f "$fractal" ] || /usr/bin/python3 benchmarks/make_fractal_dem.py 1000 "$fractal"
 echo "machine: $(nproc) cores, $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(awk '/MemTotal/ {printf "%.0f GiB", $2 / 1048576}' /proc/meminfo)"
-/usr/bin/python3 benchmarks/compare_simplifiers.py "$folder/fractal_$size.tif" --picture docs/images/simplifiers.png
+
+for dem in "$fractal" sample_data/jacksboro.tif; do
+  echo "-- $(basename "$dem")"
+  for tolerance in 1 5 10; do "$bench" "$dem" $tolerance; done
+done
+echo "-- one thread"
+"$bench" "$fractal" 5 1
+
+echo "-- what the guarantee is worth"
+PYTHONPATH=$build_folder/python /usr/bin/python3 benchmarks/compare_simplifiers.py "$fractal" --picture docs/images/simplifiers.png

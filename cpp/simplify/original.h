@@ -59,7 +59,8 @@ class Original {
   template <bool kVarying, class F>
   void for_crossings(const Point& a, const Point& b, const F& f) const;
 
-  // f(row, begin, end) for the samples in the closed triangle, row by row, columns [begin, end).
+  // f(row, begin, end) for the samples in the closed triangle, row by row, columns [begin, end); those at its
+  // corners may be left out.
   template <class F>
   static void for_samples(const Point& a, const Point& b, const Point& c, const F& f);
 
@@ -136,7 +137,8 @@ void Original::for_samples(const Point& a, const Point& b, const Point& c, const
   if (middle->y < top->y) std::swap(middle, top);
   if (bottom->y < middle->y) std::swap(bottom, middle);
   if (middle->y < top->y) std::swap(middle, top);
-  const int first = whole_from(top->y), last = static_cast<int>(bottom->y);
+  const int first = top->y < middle->y ? whole_above(top->y) : whole_from(top->y);
+  const int last = middle->y < bottom->y ? whole_from(bottom->y) - 1 : static_cast<int>(bottom->y);
   if (first > last) return;
   const auto slope = [](const Point& s, const Point& t) {
     return t.y > s.y ? (t.x - s.x) / (t.y - s.y) : 0.0;

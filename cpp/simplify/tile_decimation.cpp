@@ -38,7 +38,7 @@ std::size_t TileDecimation::run(std::span<const std::int32_t> vertices, Progress
 void TileDecimation::push_untested_edges(std::int32_t v) {
   const auto untested = [&](std::int32_t u) { return state(u).changed + 1 >= all_.pass_; };
   for_each_edge(mesh_, v, [&](std::int32_t corner, std::int32_t w) {
-    if (v < w && (untested(v) || untested(w))) push(corner, v, w);
+    if (v < w && in_tile(w) && (untested(v) || untested(w))) push(corner, v, w);
   });
 }
 
