@@ -81,8 +81,16 @@ def test_an_exception_in_progress_comes_through(big):
         sb.viewshed(big, EYE, progress=progress, **HARD)
 
 
+@pytest.fixture
+def interruptible():
+    """A shell's background jobs ignore SIGINT, and so would what they start."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.parametrize("after", [0.1, 0.5])
-def test_ctrl_c(big, after):
+def test_ctrl_c(big, after, interruptible):
     sent = []
 
     def press():
@@ -149,7 +157,7 @@ def test_cancel_everything_else(big, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_ctrl_c_ends_a_script(tmp_path):
+def test_ctrl_c_ends_a_script(tmp_path, interruptible):
     """The process of a user: SIGINT from outside, no handler of ours."""
     script = tmp_path / "job.py"
     script.write_text(f"""

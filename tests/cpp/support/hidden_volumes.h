@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <map>
 #include <memory>
@@ -12,22 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "support/says.h"
 #include "volume/hidden_volume.h"
 
 namespace sightbound::testing {
-
-// What f() complains about.
-template <class E, class F>
-std::string complaint(F f) {
-  try {
-    f();
-  } catch (const E& error) {
-    return error.what();
-  } catch (const std::exception& error) {
-    return std::string("another kind of error: ") + error.what();
-  }
-  return "no error";
-}
 
 using Key = std::array<int, 3>;
 using Answers = std::map<Key, TargetAnswer>;  // of targets with a verdict

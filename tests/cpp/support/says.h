@@ -2,6 +2,7 @@
 // What messages say.
 #pragma once
 
+#include <exception>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -12,6 +13,19 @@ namespace sightbound::testing {
 inline ::testing::AssertionResult says(const std::string& text, const std::string& part) {
   if (text.find(part) != std::string::npos) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure() << "no '" << part << "' in '" << text << "'";
+}
+
+// What f() complains about.
+template <class E, class F>
+std::string complaint(F f) {
+  try {
+    f();
+  } catch (const E& error) {
+    return error.what();
+  } catch (const std::exception& error) {
+    return std::string("another kind of error: ") + error.what();
+  }
+  return "no error";
 }
 
 }  // namespace sightbound::testing

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a DEM and its error to a TIN: what the tolerance is, and which ground it covers.
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "jobs/dem_to_tin_job.h"
+#include "support/says.h"
+
+namespace sightbound {
+namespace {
+
+using testing::complaint;
+using testing::says;
+
+ErrorModel error(double rmse) {
+  ErrorModel model;
+  model.vertical_rmse = rmse;
+  model.geologic_variation = 0.0;
+  return model;
+}
+
+// 20 x 30 samples of 10 m, waves of some metres.
+class Waves {
+ public:
+  static constexpr int kRows = 20, kCols = 30;
+
+  Waves()
+      : dem_({heights_.data(), kRows, kCols, std::numeric_limits<double>::quiet_NaN(), 1, nullptr},
+             Geotransform({1000, 10, 0, 2200, 0, -10}), "") {
+    for (std::size_t n = 0; n < heights_.size(); ++n)
+      heights_[n] = static_cast<float>(50 + 3 * std::sin(0.7 * static_cast<double>(n % kCols)) +
+                                       2 * std::cos(0.9 * static_cast<double>(n / kCols)));
+  }
+  DemToTin tin(const ErrorModel& model, const DemToTinOptions& options = {}) const {
+    Progress progress;
+    return run_dem_to_tin(dem_, model, options, progress);
+  }
+
+ private:
+  std::vector<float> heights_ = std::vector<float>(kRows * kCols);
+  ArrayDem dem_;
+};
+
+TEST(DemToTin, TheToleranceIsSigmaAtTheConfidence) {
+  const DemToTin made = Waves().tin(error(0.5), {.confidence = 0.95});
+  EXPECT_NEAR(made.least_tolerance_m, 0.98, 0.001);
+  EXPECT_EQ(made.least_tolerance_m, made.largest_tolerance_m);
+  EXPECT_LE(made.simplified.report.largest_deviation_m, made.largest_tolerance_m);
+  EXPECT_GT(made.simplified.report.largest_deviation_m, 0.5);
+  EXPECT_LT(made.simplified.report.faces_after, made.simplified.report.faces_before / 2);
+  ASSERT_EQ(made.warnings.size(), 1u);
+  EXPECT_TRUE(says(made.warnings[0], "CRS"));  // it has none
+  DemToTinOptions itself;
+  itself.error_means = ErrorMeans::kTolerance;
+  EXPECT_EQ(Waves().tin(error(0.5), itself).largest_tolerance_m, 0.5);
+}
+
+TEST(DemToTin, SlopesCountWherePositionsAreInDoubt) {
+  ErrorModel model = error(0.2);
+  model.horizontal_rmse = 1;
+  const DemToTin made = Waves().tin(model);
+  EXPECT_LT(made.least_tolerance_m, 0.9 * made.largest_tolerance_m);
+  EXPECT_GE(made.least_tolerance_m, 0.2 * 1.9599);
+  EXPECT_LE(made.simplified.report.largest_ratio, 1);
+}
+
+TEST(DemToTin, APartIsThatPart) {
+  DemToTinOptions options;
+  options.extent = Extent{1100, 2050, 1200, 2150};
+  const DemToTin part = Waves().tin(error(0.5), options);
+  EXPECT_EQ(part.simplified.report.faces_before, 2u * 9 * 9);
+  const Tin& tin = part.simplified.tin;
+  const Box3 box = bounds_of(tin);
+  EXPECT_EQ(tin.to_crs(box.low).x, 1105);
+  EXPECT_EQ(tin.to_crs(box.high).y, 2145);
+}
+
+TEST(DemToTin, ExactSamplesAreToldOf) {
+  const DemToTin made = Waves().tin(error(0));
+  ASSERT_FALSE(made.warnings.empty());
+  EXPECT_TRUE(says(made.warnings.back(), "count as exact"));
+}
+
+TEST(DemToTin, RefusesWhatItCannotHold) {
+  DemToTinOptions options;
+  options.memory_budget = 100;
+  EXPECT_THROW(Waves().tin(error(0.5), options), OverBudget);
+  options = {};
+  options.confidence = 1;
+  EXPECT_TRUE(says(complaint<InvalidInput>([&] { Waves().tin(error(0.5), options); }), "confidence"));
+  options = {};
+  options.target_faces = -1;
+  EXPECT_THROW(Waves().tin(error(0.5), options), InvalidInput);
+}
+
+TEST(DemToTin, IsCancelled) {
+  std::vector<float> heights(100);
+  const ArrayDem dem({heights.data(), 10, 10, std::numeric_limits<double>::quiet_NaN(), 1, nullptr},
+                     Geotransform({0, 1, 0, 0, 0, -1}), "");
+  Progress progress([](double) { return false; });
+  EXPECT_THROW(run_dem_to_tin(dem, error(0.5), {}, progress), Cancelled);
+}
+
+}  // namespace
+}  // namespace sightbound
