@@ -127,6 +127,37 @@ TEST(Simplify, S2HolesAndIslandsStay) {
   }
 }
 
+// Whole numbers and plateaus, so that much is collinear, coplanar or just at the tolerance; holes everywhere.
+TEST(Simplify, KeepsItsPromisesOnRandomTerrains) {
+  for (std::uint64_t seed = 100; seed < 400; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto pick = [&](int n, int what) { return static_cast<int>(n * noise(what, 0, seed)); };
+    const int rows = 2 + pick(14, 1), cols = 2 + pick(14, 2), step = 1 + pick(3, 3),
+              steepness = 1 + pick(6, 4);
+    const double holes = pick(3, 5) * 0.06;
+    const Grid<float> heights = grid_from(rows, cols, [&](int r, int c) {
+      if (noise(r, c, seed + 1) < holes) return static_cast<double>(kNan);
+      return std::floor(steepness * noise(r / step, c / step, seed + 2)) *
+             (noise(r, c, seed + 3) < 0.02 ? 40 : 1);
+    });
+    SimplifyOptions options = within(pick(4, 6) * 0.5);
+    if (pick(2, 7) == 1) {
+      options.tolerance =
+          grid_from(rows, cols, [&](int r, int c) { return std::floor(3 * noise(r, c, seed + 4)); });
+    }
+    if (pick(2, 8) == 1) {
+      options.keep = Grid<std::uint8_t>(rows, cols, 0);
+      for (int c = 0; c < cols; ++c) options.keep.at(rows / 2, c) = noise(c, 1, seed + 5) < 0.3 ? 1 : 0;
+    }
+    options.keep_border = pick(5, 9) == 0;
+    try {
+      expect_kept(terrain_of(heights), options, simplified(terrain_of(heights), options));
+    } catch (const InvalidInput& error) {
+      EXPECT_TRUE(says(error.what(), "no surface"));
+    }
+  }
+}
+
 TEST(Simplify, S4NoToleranceRemovesOnlyWhatIsCoplanar) {
   for (const Scene& scene : scenes()) {
     SCOPED_TRACE(scene.name);
