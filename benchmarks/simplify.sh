@@ -4,7 +4,7 @@
 #   benchmarks/simplify.sh        the figures of docs/performance.md, the simplifier
 #
 # Simplifies a fractal DEM of 1000 x 1000 cells and the Jacksboro sample, each to three tolerances, exact everywhere; then weighs
-# triangles against the true largest deviation, beside greedy insertion (if Python has pydelatin) and meshoptimizer (if
+# triangles against the true largest deviation, beside greedy insertion (if Python has pydelatin 0.2) and meshoptimizer (if
 # libmeshoptimizer-dev is installed), with a picture (python3-matplotlib).
 # SIGHTBOUND_BENCH_DIR (default: a folder in the system's temporary one) keeps DEMs between calls.
 source "$(dirname "${BASH_SOURCE[0]}")/../scripts/setup.sh"

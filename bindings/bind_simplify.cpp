@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "bindings.h"
+#include "numpy_views.h"
 #include "progress_bridge.h"
 #include <pybind11/stl.h>
 
@@ -12,6 +14,14 @@
 namespace sightbound::python {
 
 namespace {
+
+// `values` are in the user's row order; `flipped` as the DEM's.
+void set_keep(DemToTinOptions& options, const FloatArray& values, bool flipped) {
+  Grid<float> grid(static_cast<int>(values.shape(0)), static_cast<int>(values.shape(1)));
+  std::copy_n(values.data(), grid.size(), grid.data());
+  if (flipped) grid.flip_rows();
+  options.keep = std::make_shared<const Grid<float>>(std::move(grid));
+}
 
 void bind_options(py::module_& m) {
   py::class_<DemToTinOptions>(m, "DemToTinOptions")
@@ -24,6 +34,7 @@ void bind_options(py::module_& m) {
           })
       .def_readwrite("confidence", &DemToTinOptions::confidence)
       .def_readwrite("extent", &DemToTinOptions::extent)
+      .def("set_keep", &set_keep, py::arg("values").noconvert(), py::arg("flipped"))
       .def_readwrite("keep_border", &DemToTinOptions::keep_border)
       .def_readwrite("target_faces", &DemToTinOptions::target_faces)
       .def_readwrite("threads", &DemToTinOptions::threads)

@@ -323,6 +323,7 @@ class DemToTinOptions:
     error_is_tolerance: bool
     confidence: float
     extent: Extent | None
+    def set_keep(self, values: _Floats, flipped: bool) -> None: ...
     keep_border: bool
     target_faces: int
     threads: int

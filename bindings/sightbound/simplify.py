@@ -14,7 +14,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from ._arguments import Box, Progress
+    import numpy.typing as npt
+
+    from ._arguments import Box, FloatArray, Progress
     from ._quantities import Quantity
 
 _DEFAULTS = core.defaults()
@@ -42,6 +44,7 @@ def dem_to_tin(
     error_model: ErrorModel | None = None,
     confidence: float = _DEFAULTS["confidence"],
     extent: Box | None = None,
+    keep: npt.ArrayLike | None = None,
     keep_border: bool = False,
     target_faces: int | None = None,
     threads: int | None = None,
@@ -62,6 +65,7 @@ def dem_to_tin(
             volume. Its vertical_rmse says how much the measured heights may be wrong; an estimate from the DEM cannot.
         confidence: of the error, between 0 and 1.
         extent: (x_min, y_min, x_max, y_max) in the DEM's CRS, snapped outward to its cells; None for the whole DEM.
+        keep: array [rows, cols] on the DEM's grid, in its row order: samples that stay vertices, at their own height, where not 0.
         keep_border: keep all samples of the outline and of holes, so that neighbouring tiles fit.
         target_faces: stop at that many faces, the cheapest removed first; None to remove all that can be.
         threads: None for all cores.
@@ -80,6 +84,8 @@ def dem_to_tin(
     options.error_is_tolerance = tolerance is not None
     options.confidence = arguments.number("confidence", confidence)
     options.extent = arguments.extent(extent)
+    if keep is not None:
+        options.set_keep(_like("keep", keep, dem), core_dem(dem).flipped)
     options.keep_border = bool(keep_border)
     options.target_faces = 0 if target_faces is None else _count(target_faces)
     options.threads = arguments.threads(threads)
@@ -95,11 +101,18 @@ def dem_to_tin(
 def _as_model(tolerance: Quantity, dem: Dem) -> ErrorModel:
     """An error that is the tolerance: rasters and arrays are then aligned as errors are."""
     value = quantities.from_argument("tolerance", tolerance)
-    if hasattr(value, "shape") and value.shape != dem.shape:
-        raise ValueError(f"tolerance has shape {value.shape}, the DEM has {dem.shape}; give one value per cell.")
+    if hasattr(value, "shape"):
+        _like("tolerance", value, dem)
     if isinstance(value, float) and not 0 <= value < float("inf"):
         raise ValueError(f"tolerance is {value}; give metres, 0 or more.")
     return ErrorModel(vertical_rmse=tolerance, horizontal_rmse=0, geologic_variation=0)
+
+
+def _like(name: str, given: Any, dem: Dem) -> FloatArray:
+    values = arguments.float_array(given)
+    if values.shape != dem.shape:
+        raise ValueError(f"{name} has shape {values.shape}, the DEM has {dem.shape}; give one value per cell.")
+    return values
 
 
 def _count(faces: Any) -> int:

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/error.h"
 #include "base/memory_budget.h"
 #include "base/number_text.h"
 #include "base/parallel.h"
@@ -43,6 +44,21 @@ void set_tolerance(SampleField sampling, double factor, const Grid<float>& heigh
   result.largest_tolerance_m = largest;
 }
 
+// The window's part.
+Grid<std::uint8_t> kept_in(const Window& window, const DemSource& source, const SharedGrid& keep) {
+  if (!keep) return {};
+  if (keep->rows() != source.rows() || keep->cols() != source.cols()) {
+    throw InvalidInput("keep has " + std::to_string(keep->rows()) + " x " + std::to_string(keep->cols()) +
+                       " values, the DEM " + std::to_string(source.rows()) + " x " +
+                       std::to_string(source.cols()) + "; give one for each cell.");
+  }
+  Grid<std::uint8_t> kept(window.rows, window.cols);
+  for (int r = 0; r < window.rows; ++r) {
+    for (int c = 0; c < window.cols; ++c) kept.at(r, c) = keep->at(window.row + r, window.col + c) != 0;
+  }
+  return kept;
+}
+
 void say_what_stays(DemToTin& result) {
   if (result.least_tolerance_m > kLeastSigma) return;
   result.warnings.push_back(
@@ -78,6 +94,7 @@ DemToTin run_dem_to_tin(const DemSource& source, const ErrorModel& model, const 
   result.error_model = completed.describe();
 
   SimplifyOptions simplify;
+  simplify.keep = kept_in(window, source, options.keep);
   simplify.keep_border = options.keep_border;
   simplify.target_faces = options.target_faces;
   simplify.threads = options.threads;

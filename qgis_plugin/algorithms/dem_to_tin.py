@@ -14,6 +14,7 @@ from .. import parameters as blocks
 from ..error_block import check_error_block, log_error_model, read_error_block
 from ..errors import core_errors
 from ..feedback import Progress
+from ..keep import keep_parameter, read_keep, samples_in
 from ..rasters import open_dem, read_extent, read_raster
 from ..styling import StyleOnLoad
 from ..text import tr
@@ -56,6 +57,7 @@ class DemToTin(SightboundAlgorithm):
             ]
             + blocks.error_block()
             + [
+                blocks.advanced(keep_parameter()),
                 blocks.advanced(border),
                 blocks.advanced(faces),
                 blocks.vertical_unit_parameter(),
@@ -91,6 +93,7 @@ class DemToTin(SightboundAlgorithm):
         self.tolerance = raster.path if raster else number_or_none(self, parameters, "TOLERANCE", context)
         self.error = read_error_block(self, parameters, context, feedback, self.dem)
         self.extent = read_extent(self, parameters, context, self.dem)
+        self.keep = read_keep(self, parameters, context, feedback, self.dem)
 
     def compute(self, sightbound, parameters, context, feedback):
         faces = number_or_none(self, parameters, "TARGET_TRIANGLES", context)
@@ -100,6 +103,7 @@ class DemToTin(SightboundAlgorithm):
             error_model=self.error.model(sightbound) if self.tolerance is None else None,
             confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
             extent=self.extent,
+            keep=samples_in(self.keep, self.dem),
             keep_border=self.parameterAsBoolean(parameters, "KEEP_BORDER", context),
             target_faces=None if faces is None else int(faces),
             threads=self.threads(parameters, context),

@@ -130,6 +130,19 @@ def test_tiles_that_keep_their_border_fit(dem):
     assert border(west, middle) == border(east, middle) and len(border(west, middle)) == 41
 
 
+def test_kept_samples_stay_vertices(dem):
+    keep = np.zeros(dem.shape, bool)
+    keep[10:14, 20:25] = True
+    for order in (slice(None), slice(None, None, -1)):
+        one = dem if order.step is None else sb.Dem(hills()[::-1].copy(), (WEST, CELL, 0, NORTH - 41 * CELL, 0, CELL), crs())
+        tin = sb.dem_to_tin(one, tolerance=5.0, keep=keep[order])
+        vertices = {tuple(place) for place in np.round(tin.vertices, 4)}
+        row, col = np.nonzero(keep)
+        kept = np.column_stack([WEST + (col + 0.5) * CELL, NORTH - (row + 0.5) * CELL, hills()[row, col].astype(float)])
+        assert {tuple(place) for place in np.round(kept, 4)} <= vertices
+        assert len(tin.faces) > len(sb.dem_to_tin(one, tolerance=5.0).faces)
+
+
 def test_it_stops_at_a_number_of_faces(dem):
     tin = sb.dem_to_tin(dem, tolerance=50.0, target_faces=500)
     assert 498 <= len(tin.faces) <= 502 and tin.report["largest_deviation"] < 50
@@ -160,6 +173,7 @@ def test_it_can_be_cancelled(dem):
     ({"tolerance": float("nan")}, "tolerance"),
     ({"tolerance": np.ones((3, 3))}, "tolerance has shape"),
     ({"tolerance": 1.0, "target_faces": 0}, "target_faces is 0"),
+    ({"tolerance": 1.0, "keep": np.ones((3, 3))}, "keep has shape"),
     ({"error_model": sb.ErrorModel(1, 0, 0), "confidence": 1.0}, "confidence"),
 ])
 def test_wrong_arguments_are_named(dem, arguments, message):

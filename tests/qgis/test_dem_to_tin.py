@@ -69,6 +69,15 @@ def test_tiles_and_targets(run, dem, tmp_path):
     assert abs(simplify(run, dem, tmp_path, TOLERANCE=20.0, TARGET_TRIANGLES=300)["TRIANGLES"] - 300) <= 2
 
 
+def test_places_to_keep(run, dem, observers, tmp_path):
+    plain = simplify(run, dem, tmp_path, TOLERANCE=20.0)
+    kept = simplify(run, dem, tmp_path, TOLERANCE=20.0, KEEP=observers)
+    assert kept["TRIANGLES"] > plain["TRIANGLES"]
+    mesh = QgsMeshLayer(kept["OUTPUT"], "tin", "mdal")
+    extent = mesh.extent()
+    assert extent.xMinimum() == scenes.WEST + 5 and extent.yMaximum() == scenes.NORTH - 5
+
+
 @pytest.mark.parametrize("wrong, message", [
     ({"TOLERANCE": None}, "TOLERANCE: say how far"),
     ({"VERTICAL_ACCURACY": 1.0}, "TOLERANCE: the accuracy"),
