@@ -11,24 +11,6 @@ namespace sightbound {
 
 namespace {
 
-enum class Lies { kApart, kAcross, kInside };
-
-// Where a face lies as seen from the sides of another.
-Lies lies_in(const PlanFace& face, const PlanFace& other, double margin) {
-  Lies found = Lies::kInside;
-  for (std::size_t side = 0; side < 3; ++side) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const Xy& corner : face.corner) {
-      const double depth = other.inside(side, corner);
-      least = std::min(least, depth);
-      most = std::max(most, depth);
-    }
-    if (most < -margin) return Lies::kApart;
-    if (least < 0) found = Lies::kAcross;
-  }
-  return found;
-}
-
 // What is left of a face when others are taken away, overlapping as they may.
 double area_without(const PlanFace& face, const std::vector<const PlanFace*>& others) {
   constexpr std::size_t kManyCorners = 8;
@@ -72,7 +54,8 @@ void judge(const JudgedFace& original, const PlanFace& simplified, std::size_t n
            const PlanPolygon& piece, double margin, double z_rounding, PieceSummary& found) {
   const double slack = (original.plan.steepness + simplified.steepness) * margin + z_rounding;
   const double tolerance_slack = original.tolerance_steepness * margin;
-  for (const Xy& p : piece) {
+  for (std::size_t n = 0; n < piece.size(); ++n) {
+    const Xy p = piece[n];
     const double height = simplified.height(p), measured = std::abs(height - original.plan.height(p));
     const double tolerance =
         std::max(original.plan.at(p, original.tolerance) - tolerance_slack, original.least_tolerance);
@@ -132,14 +115,13 @@ PieceSummary Overlay::pieces_of(std::size_t first, std::size_t last, CoveredShar
     over.clear();
     simplified.each_near(face.plan.box, [&](std::size_t number) {
       const PlanFace& other = simplified.faces()[number];
-      const Lies lies = lies_in(face.plan, other, margin);
-      if (lies == Lies::kApart) return;
-      const PlanPolygon whole(face.plan);
-      const PlanPolygon piece = lies == Lies::kInside ? whole : common(whole, other, margin);
+      const PlanRelation how = relation(face.plan, other, margin);
+      if (how.apart) return;
+      const PlanPolygon piece = common(face.plan, other, how, margin);
       if (piece.empty()) return;
       ++found.pieces;
       judge(face, other, number, piece, margin, z_rounding, found);
-      const double piece_area = lies == Lies::kInside ? area : common(whole, other, 0).area();
+      const double piece_area = how.is_inside() ? area : common(face.plan, other, how, 0).area();
       shared += piece_area;
       covered.add(number, piece_area / (0.5 * other.twice_area));
       is_folded = is_folded || folded[number] != 0;
@@ -180,8 +162,10 @@ std::vector<std::uint8_t> folded_faces(const PlanBins& bins, const Workers& work
       const PlanFace& face = faces[n];
       if (face.twice_area == 0) continue;
       bins.each_near(face.box, [&](std::size_t other) {
-        if (folded[n] != 0 || other == n || lies_in(face, faces[other], 0) == Lies::kApart) return;
-        const double shared = common(PlanPolygon(face), faces[other], 0).area();
+        if (folded[n] != 0 || other == n) return;
+        const PlanRelation how = relation(face, faces[other], 0);
+        if (how.apart) return;
+        const double shared = common(face, faces[other], how, 0).area();
         if (shared > bins.margin() * std::min(face.perimeter, faces[other].perimeter)) folded[n] = 1;
       });
     }

@@ -94,65 +94,92 @@ inline PlanFace::PlanFace(const Xyz& a, const Xyz& b, const Xyz& c, double margi
   steepness = (largest - least) * longest / twice_area;
 }
 
-// Convex, counterclockwise; a triangle cut by the three sides of another has six corners at most, and
-// rounding may add a few.
+// Convex, counterclockwise. A triangle cut by the three sides of another has six corners at most; were
+// rounding to turn signs as badly as it can, a cut would make half as many again: 3, 4, 6, 9.
 class PlanPolygon {
  public:
-  PlanPolygon() = default;
-  explicit PlanPolygon(const PlanFace& face) : count_(3) {
-    std::copy(face.corner.begin(), face.corner.end(), corners_.begin());
+  PlanPolygon() {}  // NOLINT: the corners are left as they are, most are never used
+  explicit PlanPolygon(const PlanFace& face) {
+    for (const Xy& corner : face.corner) add(corner);
+  }
+  PlanPolygon(const PlanPolygon& other) { *this = other; }
+  PlanPolygon& operator=(const PlanPolygon& other) {
+    count_ = other.count_;
+    std::copy_n(other.x_.begin(), count_, x_.begin());
+    std::copy_n(other.y_.begin(), count_, y_.begin());
+    return *this;
   }
 
-  const Xy* begin() const { return corners_.data(); }
-  const Xy* end() const { return corners_.data() + count_; }
+  std::size_t size() const { return count_; }
   bool empty() const { return count_ < 3; }
+  Xy operator[](std::size_t n) const { return {x_[n], y_[n]}; }
   double area() const {
     double twice = 0;
-    for (std::size_t n = 2; n < count_; ++n) twice += plan_cross(corners_[0], corners_[n - 1], corners_[n]);
+    for (std::size_t n = 2; n < count_; ++n) twice += plan_cross((*this)[0], (*this)[n - 1], (*this)[n]);
     return std::max(0.5 * twice, 0.0);
   }
-
-  // Its corners from `first` to `last`, and the one before them all.
+  // Its first corner, and those from `first` to `last`.
   PlanPolygon part(std::size_t first, std::size_t last) const {
     PlanPolygon some;
-    some.add(corners_[0]);
-    for (std::size_t n = first; n <= last; ++n) some.add(corners_[n]);
+    some.add((*this)[0]);
+    for (std::size_t n = first; n <= last; ++n) some.add((*this)[n]);
     return some;
   }
-  std::size_t size() const { return count_; }
 
   // What of it lies at least -margin inside a side of the face (`sign` 1), or outside of it (-1).
   PlanPolygon cut(const PlanFace& face, std::size_t side, double margin, double sign = 1) const {
     PlanPolygon kept;
     std::array<double, kMost> depth;
-    for (std::size_t n = 0; n < count_; ++n) depth[n] = sign * face.inside(side, corners_[n]) + margin;
+    for (std::size_t n = 0; n < count_; ++n) depth[n] = sign * face.inside(side, (*this)[n]) + margin;
     for (std::size_t n = 0; n < count_; ++n) {
       const std::size_t m = n + 1 < count_ ? n + 1 : 0;
-      if (depth[n] >= 0) kept.add(corners_[n]);
+      const Xy p = (*this)[n], q = (*this)[m];
+      if (depth[n] >= 0) kept.add(p);
       if ((depth[n] < 0) == (depth[m] < 0)) continue;
       const double t = depth[n] / (depth[n] - depth[m]);
-      const Xy &p = corners_[n], &q = corners_[m];
       kept.add({p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)});
     }
     return kept;
   }
 
  private:
-  static constexpr std::size_t kMost = 16;
+  static constexpr std::size_t kMost = 12;
 
   void add(const Xy& p) {
-    if (count_ == kMost) throw BrokenGuarantee("a piece of two triangles has more than 16 corners.");
-    corners_[count_++] = p;
+    if (count_ == kMost) throw BrokenGuarantee("a piece of two triangles has more than 12 corners.");
+    x_[count_] = p.x;
+    y_[count_++] = p.y;
   }
 
-  std::array<Xy, kMost> corners_;
   std::size_t count_ = 0;
+  std::array<double, kMost> x_, y_;
 };
 
+// How a face lies to the sides of another.
+struct PlanRelation {
+  bool apart = false;             // wholly beyond a side
+  std::array<bool, 3> crosses{};  // not wholly inside the side
+  bool is_inside() const { return !apart && !crosses[0] && !crosses[1] && !crosses[2]; }
+};
+
+inline PlanRelation relation(const PlanFace& face, const PlanFace& other, double margin) {
+  PlanRelation found;
+  for (std::size_t side = 0; side < 3 && !found.apart; ++side) {
+    const double a = other.inside(side, face.corner[0]), b = other.inside(side, face.corner[1]),
+                 c = other.inside(side, face.corner[2]);
+    found.apart = std::max({a, b, c}) < -margin;
+    found.crosses[side] = std::min({a, b, c}) < 0;
+  }
+  return found;
+}
+
 // What two faces share in plan.
-inline PlanPolygon common(const PlanPolygon& polygon, const PlanFace& face, double margin) {
-  PlanPolygon piece = polygon;
-  for (std::size_t side = 0; side < 3 && !piece.empty(); ++side) piece = piece.cut(face, side, margin);
+inline PlanPolygon common(const PlanFace& face, const PlanFace& other, const PlanRelation& how,
+                          double margin) {
+  PlanPolygon piece(face);
+  for (std::size_t side = 0; side < 3; ++side) {
+    if (how.crosses[side] && !piece.empty()) piece = piece.cut(other, side, margin);
+  }
   return piece;
 }
 

@@ -278,6 +278,44 @@ TEST(VerifyHeights, is_what_brute_force_finds) {
   }
 }
 
+// Edges upon edges and vertices upon vertices, but for rounding: a grid and some of its samples, turned.
+TEST(VerifyHeights, is_what_brute_force_finds_where_edges_run_along_edges) {
+  constexpr int kSide = 9;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const double angle = 0.1 + unit(random), c = std::cos(angle), s = std::sin(angle);
+    Tin original;
+    SurveyedPoints survey;
+    for (int row = 0; row < kSide; ++row) {
+      for (int col = 0; col < kSide; ++col) {
+        const Xyz p{40000 + 10 * (c * col - s * row), -30000 + 10 * (s * col + c * row), 15 * unit(random)};
+        const std::int32_t n = static_cast<std::int32_t>(original.vertices.size());
+        original.vertices.push_back(p);
+        if (row > 0 && col > 0) {
+          original.faces.push_back({n - kSide - 1, n - kSide, n});
+          original.faces.push_back({n - kSide - 1, n, n - 1});
+        }
+        const bool corner = row % (kSide - 1) == 0 && col % (kSide - 1) == 0;
+        const bool border = row % (kSide - 1) == 0 || col % (kSide - 1) == 0;
+        if (corner || (!border && unit(random) < 0.4)) survey.points.push_back(p);
+      }
+    }
+    Progress progress;
+    const Tin simplified = triangulate(survey, {}, progress).tin;
+    const std::vector<float> tolerance(original.vertices.size(), 2);
+    const Brute brute(original, simplified, tolerance);
+    const VerifyReport found = report_of(original, simplified, {2});
+    EXPECT_GE(found.largest_deviation.bound, static_cast<double>(brute.deviation));
+    EXPECT_NEAR(found.largest_deviation.bound, static_cast<double>(brute.deviation), 1e-6);
+    EXPECT_NEAR(found.largest_ratio.bound, static_cast<double>(brute.ratio), 1e-6);
+    EXPECT_TRUE(found.well_formed());
+    EXPECT_EQ(found.uncovered.m2, 0);
+    EXPECT_EQ(found.surplus.m2, 0);
+    EXPECT_EQ(found.uncovered_vertices, 0u);
+  }
+}
+
 // Without its corners' hull in common, and with a face left out here and there: areas by the other way round.
 TEST(VerifyHeights, areas_add_up) {
   for (unsigned seed = 0; seed < 10; ++seed) {
