@@ -19,7 +19,7 @@ from ..rasters import open_dem, read_extent, read_raster
 from ..styling import StyleOnLoad
 from ..text import tr
 from ..values import given, number_or_none, word
-from .base import SightboundAlgorithm
+from .simplification_base import SimplificationAlgorithm
 
 MESH_FILES = "PLY (*.ply);;UGRID NetCDF (*.nc);;2DM (*.2dm);;OBJ (*.obj);;GeoPackage (*.gpkg)"
 # output, label, key of the report
@@ -31,17 +31,11 @@ NUMBERS = (
 )
 
 
-class DemToTin(SightboundAlgorithm):
+class DemToTin(SimplificationAlgorithm):
     NAME = "demtotin"
     TITLE = "DEM to TIN"
     SUMMARY = "How few triangles can carry this terrain without leaving its error, or a tolerance, anywhere?"
     TAGS = ("tin", "mesh", "triangulation", "simplify", "decimate", "tolerance", "error", "dem", "raster", "terrain")
-
-    def group(self):
-        return tr("Simplification")
-
-    def groupId(self):
-        return "simplification"
 
     def initAlgorithm(self, configuration=None):
         border = QgsProcessingParameterBoolean(

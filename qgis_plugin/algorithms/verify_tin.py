@@ -22,7 +22,7 @@ from ..text import tr, upward
 from ..tins import open_mesh, open_tin, read_mesh, read_tin_layer, tin_layer
 from ..values import given, number_or_none, word
 from ..verify_html import write_report
-from .base import SightboundAlgorithm
+from .simplification_base import SimplificationAlgorithm
 
 ORIGINALS = ("INPUT", "MESH", "TIN")
 SIMPLIFIED = ("SIMPLIFIED", "SIMPLIFIED_TIN")
@@ -43,17 +43,11 @@ FLAGS = (
 )
 
 
-class VerifyTin(SightboundAlgorithm):
+class VerifyTin(SimplificationAlgorithm):
     NAME = "verifytin"
     TITLE = "Verify TIN"
     SUMMARY = "How far is a simplified TIN from its original, everywhere and not only at the samples?"
     TAGS = ("tin", "mesh", "simplification", "decimation", "quality", "error", "tolerance", "deviation", "dem", "proof")
-
-    def group(self):
-        return tr("Simplification")
-
-    def groupId(self):
-        return "simplification"
 
     def initAlgorithm(self, configuration=None):
         for parameter in [

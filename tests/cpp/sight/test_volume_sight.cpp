@@ -66,6 +66,13 @@ TEST(VolumeSight, agrees_with_the_other_engine_on_height_fields) {
   EXPECT_GT(both_sure, lines / 5);
 }
 
+// Up to 10 m above the ground.
+Xyz place_above(const RandomDem& dem, const Box3& box, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double x = unit(random) * box.high.x, y = unit(random) * box.high.y;
+  return {x, y, dem.place(x, y).height + 10 * unit(random)};
+}
+
 // Guarantee V1 for this engine: bounds hold k of every place between the end zones.
 TEST(VolumeSight, bounds_hold_the_definition_along_the_line) {
   int judged = 0;
@@ -75,11 +82,7 @@ TEST(VolumeSight, bounds_hold_the_definition_along_the_line) {
     const VolumeRays rays(volume);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
-    const Box3 box = volume.surface().bounds();
-    const auto somewhere = [&] {
-      const double x = unit(random) * box.high.x, y = unit(random) * box.high.y;
-      return Xyz{x, y, dem.place(x, y).height + 10 * unit(random)};
-    };
+    const auto somewhere = [&] { return place_above(dem, volume.surface().bounds(), random); };
     for (int n = 0; n < 60; ++n) {
       const VolumeLine line{somewhere(), somewhere(), 3 * unit(random)};
       const RatioInterval k = rays.least(line, 0.1, 0.9);
@@ -111,11 +114,7 @@ TEST(VolumeSight, hints_change_no_bounds) {
     const VolumeRays rays(volume);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
-    const Box3 box = volume.surface().bounds();
-    const auto somewhere = [&] {
-      const double x = unit(random) * box.high.x, y = unit(random) * box.high.y;
-      return Xyz{x, y, dem.place(x, y).height + 10 * unit(random)};
-    };
+    const auto somewhere = [&] { return place_above(dem, volume.surface().bounds(), random); };
     for (int n = 0; n < 200; ++n) {
       const VolumeLine line{somewhere(), somewhere(), 3 * unit(random)};
       const LeastOnLine plain = rays.least_near(line, 0.1, 0.9, VolumeRays::kNever),
