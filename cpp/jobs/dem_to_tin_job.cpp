@@ -102,10 +102,12 @@ DemToTin run_dem_to_tin(const DemSource& source, const ErrorModel& model, const 
   set_tolerance(std::move(error.sampling), factor, heights, simplify, result);
   const DemTerrain terrain{heights, source.geotransform().of_window(window), metres_per_unit,
                            horizontal_crs(source.crs_wkt())};
+  progress.begin(0.9, 1);
   result.simplified = simplify_dem(terrain, simplify, progress);
   const std::vector<std::string> notes = source.notes();  // reading adds to them
   result.warnings.insert(result.warnings.begin(), notes.begin(), notes.end());
   say_what_stays(result);
+  progress.finish();
   return result;
 }
 

@@ -141,7 +141,6 @@ SimplifiedTin simplify_dem(const DemTerrain& terrain, const SimplifyOptions& opt
   MemoryBudget(options.memory_bytes)
       .require(terrain.heights.size() * kBytesPerSample, "Simplifying the DEM", "Give a part of it.");
   const Workers workers(options.threads);
-  progress.begin(1, 1);
   SimplifiedTin result;
   const Original original(terrain.heights, options.tolerance, options.tolerance_m);
   PlanMesh mesh(terrain.heights);
@@ -156,7 +155,6 @@ SimplifiedTin simplify_dem(const DemTerrain& terrain, const SimplifyOptions& opt
     decimate(mesh, original, workers, progress);
   }
   write(mesh, terrain, original, result);
-  progress.finish();
   return result;
 }
 

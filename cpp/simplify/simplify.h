@@ -54,7 +54,7 @@ struct SimplifiedTin {
 };
 
 // Throws InvalidInput (a tolerance that is negative or not finite, fewer than 2 x 2 samples, no triangle,
-// sizes that do not agree), OverBudget, Cancelled.
+// sizes that do not agree), OverBudget, Cancelled. Advances `progress` by 1 in all.
 SimplifiedTin simplify_dem(const DemTerrain&, const SimplifyOptions&, Progress&);
 
 }  // namespace sightbound
