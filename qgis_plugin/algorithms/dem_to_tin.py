@@ -14,7 +14,7 @@ from .. import parameters as blocks
 from ..error_block import check_error_block, log_error_model, read_error_block
 from ..errors import core_errors
 from ..feedback import Progress
-from ..keep import keep_parameter, read_keep, samples_in
+from ..places_on_dem import distances_from, places, read_places, samples_in
 from ..rasters import open_dem, read_extent, read_raster
 from ..styling import StyleOnLoad
 from ..text import tr
@@ -42,6 +42,7 @@ class DemToTin(SimplificationAlgorithm):
             "KEEP_BORDER", tr("Keep all samples of the outline (tiles that fit)"), False, True
         )
         faces = blocks.number("TARGET_TRIANGLES", tr("Stop at so many triangles"), None, 1, None, integer=True)
+        growth = blocks.number("FOCUS_GROWTH", tr("Growth of the tolerance, metres for each kilometre"), None, 0.0)
         for parameter in (
             blocks.dem_block()
             + [
@@ -51,7 +52,9 @@ class DemToTin(SimplificationAlgorithm):
             ]
             + blocks.error_block()
             + [
-                blocks.advanced(keep_parameter()),
+                blocks.advanced(places("FOCUS", tr("Area of focus: the tolerance grows with the distance from it"))),
+                blocks.advanced(growth),
+                blocks.advanced(places("KEEP", tr("Places to keep at full resolution"))),
                 blocks.advanced(border),
                 blocks.advanced(faces),
                 blocks.vertical_unit_parameter(),
@@ -78,6 +81,10 @@ class DemToTin(SimplificationAlgorithm):
             return tr("{}: the accuracy of the heights says the same thing; give only one of them.").format(said[0])
         if not said and not any(given(parameters, name) for name in errors):
             return tr("TOLERANCE: say how far the TIN may be from the elevation model, here or as VERTICAL_ACCURACY.")
+        if given(parameters, "FOCUS") != given(parameters, "FOCUS_GROWTH"):
+            return tr("FOCUS_GROWTH: give it together with FOCUS, or none of the two.")
+        if given(parameters, "FOCUS") and not given(parameters, "TOLERANCE"):
+            return tr("TOLERANCE: give the tolerance at the FOCUS itself, in metres.")
         return self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
 
     def read_input(self, parameters, context, feedback):
@@ -87,13 +94,19 @@ class DemToTin(SimplificationAlgorithm):
         self.tolerance = raster.path if raster else number_or_none(self, parameters, "TOLERANCE", context)
         self.error = read_error_block(self, parameters, context, feedback, self.dem)
         self.extent = read_extent(self, parameters, context, self.dem)
-        self.keep = read_keep(self, parameters, context, feedback, self.dem)
+        self.keep, self.focus = (
+            read_places(self, parameters, name, context, feedback, self.dem) for name in ("KEEP", "FOCUS")
+        )
+        self.growth = number_or_none(self, parameters, "FOCUS_GROWTH", context)
 
     def compute(self, sightbound, parameters, context, feedback):
         faces = number_or_none(self, parameters, "TARGET_TRIANGLES", context)
+        tolerance = self.tolerance
+        if self.focus:
+            tolerance = tolerance + self.growth / 1000.0 * distances_from(self.focus, self.dem, "FOCUS")
         tin = sightbound.dem_to_tin(
             open_dem(sightbound, self.dem, self.vertical_unit, feedback),
-            tolerance=self.tolerance,
+            tolerance=tolerance,
             error_model=self.error.model(sightbound) if self.tolerance is None else None,
             confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
             extent=self.extent,

@@ -5,7 +5,16 @@ import json
 
 import pytest
 import scenes
-from qgis.core import QgsMeshLayer, QgsProcessingContext, QgsProcessingException, QgsProcessingUtils, QgsProject
+from qgis.core import (
+    QgsMesh,
+    QgsMeshLayer,
+    QgsPointXY,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingUtils,
+    QgsProject,
+    QgsRectangle,
+)
 
 
 def simplify(run, dem, folder, **more):
@@ -78,10 +87,29 @@ def test_places_to_keep(run, dem, observers, tmp_path):
     assert extent.xMinimum() == scenes.WEST + 5 and extent.yMaximum() == scenes.NORTH - 5
 
 
+def test_the_tolerance_grows_with_the_distance_from_the_focus(run, dem, tmp_path):
+    focus = str(scenes.write_points(tmp_path / "focus.gpkg", [(scenes.WEST + 15.0, scenes.NORTH - 15.0, {})], {}))
+    found = simplify(run, dem, tmp_path, TOLERANCE=0.2, FOCUS=focus, FOCUS_GROWTH=10.0)
+    even = simplify(run, dem, tmp_path, TOLERANCE=0.2, OUTPUT=str(tmp_path / "even.ply"))
+    assert found["TRIANGLES"] < 0.7 * even["TRIANGLES"] and 0.2 < found["LARGEST_DEVIATION"] < 0.2 + 10.0 * 0.47
+    assert found["LARGEST_RATIO"] <= 1.0
+    corner = QgsRectangle(scenes.WEST, scenes.NORTH - 60.0, scenes.WEST + 60.0, scenes.NORTH)
+    near = [sum(corner.contains(QgsPointXY(x, y)) for x, y in vertices(one["OUTPUT"])) for one in (found, even)]
+    assert near[0] > 0.6 * near[1]
+
+
+def vertices(path):
+    mesh = QgsMesh()
+    layer = QgsMeshLayer(path, "tin", "mdal")
+    layer.dataProvider().populateMesh(mesh)
+    return [(mesh.vertex(n).x(), mesh.vertex(n).y()) for n in range(mesh.vertexCount())]
+
+
 @pytest.mark.parametrize("wrong, message", [
     ({"TOLERANCE": None}, "TOLERANCE: say how far"),
     ({"VERTICAL_ACCURACY": 1.0}, "TOLERANCE: the accuracy"),
     ({"TOLERANCE": None, "VERTICAL_ACCURACY": 1.0, "CONFIDENCE": 1.0}, "CONFIDENCE"),
+    ({"FOCUS_GROWTH": 1.0}, "FOCUS_GROWTH: give it together"),
     ({"OUTPUT": "/nowhere/tin.ply"}, "OUTPUT"),
     ({"OUTPUT": "tin.xyz"}, "OUTPUT"),
 ])
