@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// bench_simplify DEM tolerance [threads [target_faces]]
+// bench_simplify DEM tolerance [threads [target_faces [least_gain]]]
 //
 // One line: faces before and after, seconds, and the process's peak memory less what it held before.
 // benchmarks/simplify.sh runs the lot. Cells count as they are, whatever the CRS: heights alone matter.
@@ -31,7 +31,7 @@ double processor_seconds() {
 
 int run(int count, char** words) {
   if (count < 3) {
-    std::fprintf(stderr, "bench_simplify DEM tolerance [threads [target_faces]]\n");
+    std::fprintf(stderr, "bench_simplify DEM tolerance [threads [target_faces [least_gain]]]\n");
     return 2;
   }
   const auto source = open_dem(words[1]);
@@ -41,6 +41,7 @@ int run(int count, char** words) {
   options.tolerance_m = std::atof(words[2]);
   options.threads = count > 3 ? std::atoi(words[3]) : 0;
   options.target_faces = count > 4 ? std::atoll(words[4]) : 0;
+  if (count > 5) options.least_gain = std::atof(words[5]);
   const double before = peak_mib(), used_before = processor_seconds();
   const auto start = std::chrono::steady_clock::now();
   const SimplifiedTin made = simplify_dem({heights, source->geotransform(), 1, ""}, options, progress);

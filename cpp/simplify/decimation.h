@@ -18,8 +18,9 @@
 namespace sightbound {
 
 struct PassPlan {
-  int tile = 128;                                                    // cells a side
-  int shift_x = 0, shift_y = 0;                                      // of the tiles, cells
+  int tile = 128;                // cells a side
+  int shift_x = 0, shift_y = 0;  // of the tiles, cells
+  bool relax = false;            // move vertices to where they have most room before anything else
   std::size_t most_faces = std::numeric_limits<std::size_t>::max();  // that a tile may lose, give or take 1
   double share = 0;                                                  // of `progress`
 };

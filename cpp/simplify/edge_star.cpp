@@ -67,6 +67,13 @@ bool ring_of_inner_edge(const PlanMesh& mesh, std::int32_t at_a, EdgeStar& star)
   return true;
 }
 
+void look_up_places(const PlanMesh& mesh, EdgeStar& star) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(star.size); ++i) star.at[i] = mesh.place(star.ring[i]);
+  if (star.closed) star.at[static_cast<std::size_t>(star.size)] = star.at[0];
+  star.place_a = mesh.place(star.a);
+  star.place_b = mesh.place(star.b);
+}
+
 }  // namespace
 
 bool gather(const PlanMesh& mesh, std::int32_t corner, bool prefer_next, EdgeStar& star) {
@@ -84,10 +91,17 @@ bool gather(const PlanMesh& mesh, std::int32_t corner, bool prefer_next, EdgeSta
   } else if (!ring_of_inner_edge(mesh, a_is_next ? PlanMesh::next(beyond) : corner, star)) {
     return false;
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(star.size); ++i) star.at[i] = mesh.place(star.ring[i]);
-  if (star.closed) star.at[static_cast<std::size_t>(star.size)] = star.at[0];
-  star.place_a = mesh.place(star.a);
-  star.place_b = mesh.place(star.b);
+  look_up_places(mesh, star);
+  return true;
+}
+
+bool gather_around(const PlanMesh& mesh, std::int32_t vertex, EdgeStar& star) {
+  const std::int32_t corner = mesh.corner_of(vertex), first = mesh.vertex(PlanMesh::next(corner));
+  star.a = star.b = vertex;
+  star.closed = true;
+  star.size = 0;
+  if (!append(mesh, corner, first, star)) return false;
+  look_up_places(mesh, star);
   return true;
 }
 

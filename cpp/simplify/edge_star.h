@@ -36,4 +36,7 @@ struct EdgeStar {
 // everywhere refuses it.
 bool gather(const PlanMesh& mesh, std::int32_t corner, bool prefer_next, EdgeStar& star);
 
+// The ring of a vertex inside, which is both a and b. False when it is too long.
+bool gather_around(const PlanMesh& mesh, std::int32_t vertex, EdgeStar& star);
+
 }  // namespace sightbound

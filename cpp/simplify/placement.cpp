@@ -15,9 +15,16 @@ namespace {
 // Where more than this part of the tolerance is missing, a search rarely finds a place
 // (docs/algorithms/simplify.md).
 constexpr double kReach = 1;
-constexpr int kMostVisits = 40;
-constexpr double kFirstStep = 0.3;       // of the edge's length
-constexpr double kLastStep = 1.0 / 256;  // cells
+
+// A descent, by steps along columns and rows that are halved when none helps.
+struct Steps {
+  double first;  // of the edge's length, or of the mean length of the edges around
+  double last;   // cells
+  int most_visits;
+};
+constexpr Steps kSearchSteps{0.3, 1.0 / 256, 40};
+constexpr Steps kRoomSteps{0.1, 1.0 / 64, 12};
+constexpr double kLeastGain = 0.01;  // of what is missing, or of the room there is
 
 double snapped(double v) { return std::floor(v * kStepsPerCell + 0.5) / kStepsPerCell; }
 
@@ -36,8 +43,8 @@ bool well_shaped(const EdgeStar& star, const Point& p) {
   return true;
 }
 
-// The best place seen so far: where the heights allowed are most, or where least is missing for there to be
-// one.
+// The best place seen so far: where the interval of heights is widest, or where least is missing for there to
+// be one.
 class Search {
  public:
   Search(const Envelope& envelope, const EdgeStar& star, double reach)
@@ -47,8 +54,9 @@ class Search {
   bool visit(double x, double y) {
     const Point p{snapped(x), snapped(y), 0};
     if (!well_shaped(star_, p)) return false;
-    const HeightInterval heights = envelope_.heights_for(star_, p, missing_);
-    if (heights.missing() >= missing_) return false;
+    const double most = missing_ - kLeastGain * std::abs(missing_);
+    const HeightInterval heights = envelope_.heights_for(star_, p, most);
+    if (heights.missing() > most) return false;
     best_ = {p.x, p.y, 0.5 * (heights.low + heights.high)};
     missing_ = heights.missing();
     any_ = true;
@@ -56,16 +64,18 @@ class Search {
   }
   bool visit(const Point& p) { return visit(p.x, p.y); }
   bool found() const { return any_ && missing_ <= 0; }
+  double room() const { return -missing_; }
 
-  // Downhill in what is missing, in ever smaller steps along columns and rows.
-  void descend(double step) {
-    for (int visits = 0; any_ && visits < kMostVisits && step > kLastStep;) {
+  // Downhill in what is missing; until nothing is, or for as much room as can be had.
+  void descend(const Steps& steps, double length, bool until_found) {
+    double step = steps.first * length;
+    for (int visits = 0; any_ && visits < steps.most_visits && step > steps.last;) {
       bool better = false;
       constexpr std::array<std::array<int, 2>, 4> kDirections{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
       for (const auto& d : kDirections) {
         ++visits;
         better |= visit(best_.x + d[0] * step, best_.y + d[1] * step);
-        if (found()) return;
+        if (until_found && found()) return;
       }
       if (!better) step /= 2;
     }
@@ -115,9 +125,23 @@ std::optional<Point> find_place(const Envelope& envelope, const EdgeStar& star, 
   }
   if (!search.found() && freedom == Freedom::kPlane) {
     search.visit(centre_of(star));
-    if (!search.found()) search.descend(kFirstStep * std::sqrt(square_of_length(a, b)));
+    if (!search.found()) search.descend(kSearchSteps, std::sqrt(square_of_length(a, b)), true);
   }
   return search.result();
+}
+
+std::optional<Point> find_room(const Envelope& envelope, const EdgeStar& star) {
+  const Point& p = star.place_a;
+  double length = 0;
+  for (int i = 0; i < star.size; ++i) {
+    length += std::sqrt(square_of_length(p, star.at[static_cast<std::size_t>(i)])) / star.size;
+  }
+  Search search(envelope, star, 0);
+  if (!search.visit(p)) return {};
+  search.descend(kRoomSteps, length, false);
+  const auto best = search.result();
+  const bool same = best->x == p.x && best->y == p.y && std::abs(best->z - p.z) <= kLeastGain * search.room();
+  return same ? std::nullopt : best;
 }
 
 }  // namespace sightbound

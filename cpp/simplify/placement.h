@@ -24,6 +24,10 @@ enum class Freedom {
 std::optional<Point> find_place(const Envelope& envelope, const EdgeStar& star, const QuadricSum& quadric,
                                 Freedom freedom);
 
+// Where a vertex inside has most room: near its place in plan, the height in the middle of the widest
+// interval found. Nothing when it is there already. `star` is its own (gather_around).
+std::optional<Point> find_room(const Envelope& envelope, const EdgeStar& star);
+
 inline constexpr double kThinnest = 1.0 / 64;  // cells: least height of a triangle in plan
 
 }  // namespace sightbound

@@ -54,6 +54,9 @@ void check(const DemTerrain& terrain, const SimplifyOptions& options) {
     throw InvalidInput("target_faces is " + std::to_string(options.target_faces) +
                        "; give 0 (no target) or more.");
   }
+  if (!(options.least_gain >= 0 && options.least_gain <= 1)) {
+    throw InvalidInput("least_gain is " + number_text(options.least_gain) + "; give a part, 0 to 1.");
+  }
 }
 
 // Samples that have to stay.
@@ -66,29 +69,34 @@ void fix(PlanMesh& mesh, const SimplifyOptions& options) {
   }
 }
 
-// Tiles wander, so that what lies at a seam in one pass lies inside a tile in another; after four passes
-// nothing has always been at a seam, and further ones gain little.
-void decimate(PlanMesh& mesh, const Original& original, const Workers& workers, Progress& progress) {
+// Tiles wander, so that what lies at a seam in one pass lies inside a tile in another: after four passes
+// nothing has always been at one. A target needs all of the plane to be one tile: only then the cheapest go
+// first everywhere.
+void decimate(PlanMesh& mesh, const Original& original, const SimplifyOptions& options,
+              const Workers& workers, Progress& progress) {
   constexpr std::array<std::array<int, 2>, 4> kShifts{
       {{0, 0}, {2, 2}, {0, 2}, {2, 0}}};  // quarters of a tile
-  constexpr std::array<double, 4> kShares{0.8, 0.1, 0.05, 0.05};
+  constexpr std::size_t kLeastPasses = kShifts.size(), kMostPasses = 24;
+  const auto target = static_cast<std::size_t>(options.target_faces);
   const Envelope envelope(original);
   Decimation decimation(mesh, envelope);
-  for (std::size_t n = 0; n < kShifts.size(); ++n) {
-    PassPlan plan{.share = kShares[n]};
-    plan.shift_x = kShifts[n][0] * plan.tile / 4;
-    plan.shift_y = kShifts[n][1] * plan.tile / 4;
-    decimation.pass(plan, workers, progress);
+  std::size_t faces = mesh.count_faces();
+  double left = 1;  // of the progress
+  for (std::size_t n = 0; n < kMostPasses && faces > target; ++n) {
+    PassPlan plan{.relax = n > 0, .share = n == 0 ? 0.6 : 0.3 * left};
+    left -= plan.share;
+    if (target > 0) {
+      plan.tile = kMostCells;
+      plan.most_faces = faces - target;
+    } else {
+      plan.shift_x = kShifts[n % kShifts.size()][0] * plan.tile / 4;
+      plan.shift_y = kShifts[n % kShifts.size()][1] * plan.tile / 4;
+    }
+    const std::size_t gone = decimation.pass(plan, workers, progress);
+    faces -= gone;
+    const bool seams_seen = target > 0 || n + 1 >= kLeastPasses;
+    if (seams_seen && static_cast<double>(gone) < options.least_gain * static_cast<double>(faces)) return;
   }
-}
-
-// All of the plane is one tile: only then the cheapest go first everywhere.
-void decimate_to(std::size_t target, std::size_t faces, PlanMesh& mesh, const Original& original,
-                 const Workers& workers, Progress& progress) {
-  if (target >= faces) return;
-  const Envelope envelope(original);
-  Decimation(mesh, envelope)
-      .pass({.tile = kMostCells, .most_faces = faces - target, .share = 1}, workers, progress);
 }
 
 float rounded_up(double value) {
@@ -148,12 +156,7 @@ SimplifiedTin simplify_dem(const DemTerrain& terrain, const SimplifyOptions& opt
   if (result.report.faces_before == 0)
     throw InvalidInput("The DEM has no three samples side by side that are not nodata: it makes no surface.");
   fix(mesh, options);
-  if (options.target_faces > 0) {
-    decimate_to(static_cast<std::size_t>(options.target_faces), result.report.faces_before, mesh, original,
-                workers, progress);
-  } else {
-    decimate(mesh, original, workers, progress);
-  }
+  decimate(mesh, original, options, workers, progress);
   write(mesh, terrain, original, result);
   return result;
 }

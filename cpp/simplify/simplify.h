@@ -36,6 +36,9 @@ struct SimplifyOptions {
   // Stop as soon as there are no more faces, cheapest collapses first (one thread); 0 = until nothing can be
   // removed.
   std::int64_t target_faces = 0;
+  // Passes go on as long as one removes this part of the faces left (four at least). Smaller: fewer faces,
+  // more time (docs/performance.md).
+  double least_gain = 0.01;
   std::size_t memory_bytes = 0;  // budget; 0 = three quarters of the memory usable
   int threads = 0;               // 0 = all
 };

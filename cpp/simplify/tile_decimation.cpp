@@ -26,6 +26,9 @@ void for_each_edge(const PlanMesh& mesh, std::int32_t v, const F& f) {
 }  // namespace
 
 std::size_t TileDecimation::run(std::span<const std::int32_t> vertices, Progress& progress) {
+  if (plan_.relax) {
+    for (const std::int32_t v : vertices) relax(v);
+  }
   for (const std::int32_t v : vertices) push_untested_edges(v);
   Edge edge{};
   for (std::size_t n = 0; faces_gone_ < plan_.most_faces && pop(edge); ++n) {
@@ -33,6 +36,25 @@ std::size_t TileDecimation::run(std::span<const std::int32_t> vertices, Progress
     try_collapse(corner_of(edge));
   }
   return faces_gone_;
+}
+
+void TileDecimation::relax(std::int32_t v) {
+  if (stays(v) || mesh_.kind(v) != VertexKind::kInside || !gather_around(mesh_, v, star_)) return;
+  const auto place = find_room(all_.envelope_, star_);
+  if (!place) return;
+  mesh_.move(v, *place);
+  Quadric& quadric = all_.quadrics_[at(v)];
+  quadric = QuadricSum(quadric, star_.place_a, {}, star_.place_a).seen_from(*place);
+  has_changed(v);
+}
+
+// `v` and all vertices of the star's ring.
+void TileDecimation::has_changed(std::int32_t v) {
+  state(v).changed = all_.pass_;
+  for (int i = 0; i < star_.size; ++i) {
+    const std::int32_t w = star_.ring[at(i)];
+    if (in_tile(w)) state(w).changed = all_.pass_;
+  }
 }
 
 void TileDecimation::push_untested_edges(std::int32_t v) {
@@ -110,11 +132,7 @@ void TileDecimation::collapse(const Point& to, const QuadricSum& quadric) {
   faces_gone_ += star_.right < 0 ? 1 : 2;
   all_.quadrics_[at(a)] = quadric.seen_from(to);
   ++state(a).moves;
-  state(a).changed = all_.pass_;
-  for (int i = 0; i < star_.size; ++i) {
-    const std::int32_t v = star_.ring[at(i)];
-    if (in_tile(v)) state(v).changed = all_.pass_;
-  }
+  has_changed(a);
   push_all_edges(a);
 }
 

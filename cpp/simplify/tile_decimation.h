@@ -33,6 +33,8 @@ class TileDecimation {
   bool in_tile(std::int32_t v) { return state(v).tile == tile_; }
   bool stays(std::int32_t v) { return state(v).frozen || mesh_.kind(v) == VertexKind::kFixed; }
 
+  void relax(std::int32_t v);
+  void has_changed(std::int32_t v);
   void push_untested_edges(std::int32_t v);
   void push_all_edges(std::int32_t v);
   void push(std::int32_t corner, std::int32_t v, std::int32_t w);

@@ -250,7 +250,7 @@ TEST(Simplify, StopsAtTheTarget) {
   }
   SimplifyOptions options = within(3);
   options.target_faces = 2;
-  EXPECT_LT(simplified(terrain, options).report.faces_after, 1.1 * static_cast<double>(least));
+  EXPECT_LE(simplified(terrain, options).report.faces_after, least + 4);  // another order, much the same end
   options.target_faces = 5000;
   EXPECT_EQ(simplified(terrain, options).report.faces_after, 2U * 29 * 30);
 }
@@ -299,6 +299,9 @@ TEST(Simplify, RefusesWhatItCannotUse) {
   options = {};
   options.target_faces = -3;
   EXPECT_TRUE(says(message(good, std::move(options)), "target_faces is -3"));
+  options = {};
+  options.least_gain = 1.5;
+  EXPECT_TRUE(says(message(good, std::move(options)), "least_gain is 1.5"));
 }
 
 }  // namespace
