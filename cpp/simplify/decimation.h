@@ -21,8 +21,9 @@ struct PassPlan {
   int tile = 128;                // cells a side
   int shift_x = 0, shift_y = 0;  // of the tiles, cells
   bool relax = false;            // move vertices to where they have most room before anything else
-  std::size_t most_faces = std::numeric_limits<std::size_t>::max();  // that a tile may lose, give or take 1
-  double share = 0;                                                  // of `progress`
+  // That a tile may lose, give or take 1.
+  std::size_t most_faces = std::numeric_limits<std::size_t>::max();
+  double share = 0;  // of `progress`
 };
 
 class Decimation {
@@ -39,8 +40,8 @@ class Decimation {
   struct State {
     std::uint32_t moves = 0;
     std::int32_t tile = 0;
-    std::uint16_t changed =
-        0;                // the last pass that changed something around it, or left an edge of it untested
+    // The last pass that changed something around it, or left edges of it untested.
+    std::uint16_t changed = 0;
     bool frozen = false;  // in this pass
   };
 

@@ -18,7 +18,8 @@ namespace sightbound {
 
 namespace {
 
-constexpr std::size_t kBytesPerSample = 130;  // mesh 72, its state 13, tiles 12, and the result's attribute
+constexpr std::size_t kBytesPerSample = 170;  // mesh 88, quadrics 40, states 12, tiles 8, and growth
+constexpr std::size_t kMostSamples = std::size_t{1} << 28;  // eight corners each, numbered in 31 bits
 
 void check(const DemTerrain& terrain, const SimplifyOptions& options) {
   const Grid<float>& z = terrain.heights;
@@ -29,6 +30,13 @@ void check(const DemTerrain& terrain, const SimplifyOptions& options) {
   if (z.rows() > kMostCells || z.cols() > kMostCells) {
     throw InvalidInput("The DEM has " + std::to_string(z.rows()) + " x " + std::to_string(z.cols()) +
                        " samples, more than " + std::to_string(kMostCells) + " a side; give a part of it.");
+  }
+  if (z.size() >= kMostSamples) {
+    throw InvalidInput("The DEM has " + std::to_string(z.size()) +
+                       " samples, too many for one piece (2^28); give a part of it.");
+  }
+  for (const float height : z.values()) {
+    if (std::isinf(height)) throw InvalidInput("A height of the DEM is infinite; make it nodata (NaN).");
   }
   const auto check_value = [](double tolerance) {
     if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
@@ -127,6 +135,8 @@ void write(const PlanMesh& mesh, const DemTerrain& terrain, const Original& orig
   const auto& g = map.coefficients();
   const bool mirrored = g[1] * g[5] - g[2] * g[4] > 0;
   TinAttribute deviation{"deviation", {}};
+  tin.faces.reserve(mesh.count_faces());
+  deviation.values.reserve(tin.faces.capacity());
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles()); ++t) {
     if (!mesh.alive(t)) continue;
     const std::int32_t a = mesh.vertex(4 * t), b = mesh.vertex(4 * t + 1), c = mesh.vertex(4 * t + 2);

@@ -56,8 +56,10 @@ struct SimplifiedTin {
   SimplifyReport report;
 };
 
-// Throws InvalidInput (a tolerance that is negative or not finite, fewer than 2 x 2 samples, no triangle,
-// sizes that do not agree), OverBudget, Cancelled. Advances `progress` by 1 in all.
+// Throws InvalidInput (a tolerance that is negative or not finite, an infinite height, fewer than 2 x 2
+// samples, no triangle, sizes that do not agree, 2^28 samples or more, more than 65,536 a side), OverBudget,
+// Cancelled. 170 bytes a sample; on rough ground 16 microseconds of processor each for a tolerance of 5 m, 60
+// for 1 m (docs/performance.md). Advances `progress` by 1 in all.
 SimplifiedTin simplify_dem(const DemTerrain&, const SimplifyOptions&, Progress&);
 
 }  // namespace sightbound

@@ -5,7 +5,7 @@ namespace sightbound {
 
 namespace {
 
-constexpr std::size_t kCheckEvery = 1024;  // edges
+constexpr std::size_t kCheckEvery = 1024;  // edges or vertices
 
 // f(corner, w) for each neighbour w of v; the corner is at one of the two, its next at the other.
 template <class F>
@@ -27,7 +27,10 @@ void for_each_edge(const PlanMesh& mesh, std::int32_t v, const F& f) {
 
 std::size_t TileDecimation::run(std::span<const std::int32_t> vertices, Progress& progress) {
   if (plan_.relax) {
-    for (const std::int32_t v : vertices) relax(v);
+    for (std::size_t n = 0; n < vertices.size(); ++n) {
+      if (n % kCheckEvery == 0) progress.check();
+      relax(vertices[n]);
+    }
   }
   for (const std::int32_t v : vertices) push_untested_edges(v);
   Edge edge{};
