@@ -53,8 +53,8 @@ def _rows(report, tolerance):
             (tr("Ground of the original that is uncovered (m²)"), _area(report["uncovered"])),
             (tr("Area beyond the original (m²)"), _area(report["surplus"])),
         ]
-    pieces = tr("Pieces of the overlay") if vertical else tr("Samples, no place farther from one than (m)")
-    rows.append((pieces, f"{report['pieces']}" + ("" if vertical else f", {report['resolution']:.4g}")))
+    pieces = tr("Pieces of the overlay") if vertical else tr("Triangles looked at; bounds above the truth by at most (m)")
+    rows.append((pieces, f"{report['pieces']}" + ("" if vertical else f"; {upward(report['resolution'])}")))
     return rows
 
 

@@ -71,8 +71,8 @@ class Verification:
         uncovered (ground of the original under no simplified face), surplus (the other way round): dicts of m2 and place,
             the middle of the face with most of it; only of method "vertical"
         uncovered_vertices: of the original
-        resolution: nearer places are not told apart; method "distance": no place is farther from a sample
-        original_faces, simplified_faces, pieces (of the overlay, or samples)
+        resolution: no bound is more above the truth than about that, metres
+        original_faces, simplified_faces, pieces (of the overlay, or triangles looked at)
         mean_deviation, rms_deviation, histogram (low, high, counts): at the vertices of the original
         notes: what was repaired when the simplified TIN was read; version
         """
@@ -94,9 +94,9 @@ def verify(
     """Certifies how far a simplified TIN is from its original, whoever made it.
 
     Of height fields the vertical deviation is looked at on every piece of the overlay of both triangulations, so its largest
-    value is known, not sampled; bounds are outward of rounding. Of other TINs both surfaces are sampled, and no place
-    is farther than `resolution` from a sample: bounds hold between samples too (with a tolerance that varies, that of the ratio
-    from the simplified to the original holds at samples).
+    value is known, not sampled; bounds are outward of rounding. Of other TINs distances are taken both ways, on
+    triangles that are cut until no bound is more than `resolution` above the truth: they hold everywhere (with a tolerance
+    that varies, that of the ratio from the simplified to the original at samples).
 
     Args:
         original: a Tin, or a Dem: its samples, each square of four split along the NW-SE diagonal, without triangles that have
@@ -104,7 +104,8 @@ def verify(
         simplified: a Tin in the same CRS.
         tolerance: metres, more than 0; one number, or one for each vertex of the original (of a Dem an array [rows, cols]),
             linear between them.
-        resolution: largest distance between samples, metres; None for a choice from the area (some million samples).
+        resolution: of TINs that are no height fields, metres; None for a 64th of the largest distance or of the tolerance. The
+            report says what was reached.
         threads: None for all cores. The result does not depend on it.
         memory_budget: bytes; None for three quarters of the memory.
         progress: called with the fraction done, at most ten times a second; False cancels.

@@ -15,8 +15,9 @@ namespace sightbound {
 
 namespace {
 
-constexpr std::size_t kBytesOfSample = 13;  // height, tolerance, deviation, used
-constexpr std::size_t kBytesOfFace = 400;   // of the simplified, in its bins or in a tree of boxes
+constexpr std::size_t kBytesOfSample = 13;     // height, tolerance, deviation, used
+constexpr std::size_t kBytesOfFace = 400;      // of the simplified, in its bins or in a tree of boxes
+constexpr std::size_t kBytesOfOriginal = 150;  // of a face of a TIN, in a tree of boxes
 
 void require_one_crs(const std::string& original, const std::string& simplified) {
   if (original.empty() || simplified.empty() ||
@@ -26,9 +27,10 @@ void require_one_crs(const std::string& original, const std::string& simplified)
                      " and " + short_crs(horizontal_crs(simplified)) + "); bring them into one.");
 }
 
-void require_memory(std::size_t samples, const Tin& simplified, const VerifyJobOptions& options) {
+void require_memory(std::size_t samples, std::size_t faces, const Tin& simplified,
+                    const VerifyJobOptions& options) {
   MemoryBudget(options.memory_budget)
-      .require(samples * kBytesOfSample + simplified.faces.size() * kBytesOfFace,
+      .require(samples * kBytesOfSample + faces * kBytesOfOriginal + simplified.faces.size() * kBytesOfFace,
                "Verifying " + std::to_string(simplified.faces.size()) + " faces against " +
                    std::to_string(samples) + " samples",
                "Verify a part of them.");
@@ -60,7 +62,7 @@ VerifyReport run_verify(const DemSource& original, const Tin& simplified, const 
         "simplified has no CRS, or another unit of length in plan than original; give it the CRS "
         "of the DEM.");
   }
-  require_memory(original.window().cells(), simplified, options);
+  require_memory(original.window().cells(), 0, simplified, options);
   Tolerance used = tolerance;
   std::vector<float> turned;
   const bool fits = tolerance.of_vertices.size() == original.window().cells();  // else verify() refuses it
@@ -81,7 +83,7 @@ VerifyReport run_verify(const DemSource& original, const Tin& simplified, const 
 VerifyReport run_verify(const Tin& original, const Tin& simplified, const Tolerance& tolerance,
                         const VerifyJobOptions& options, Progress& progress) {
   require_one_crs(original.crs_wkt, simplified.crs_wkt);
-  require_memory(original.vertices.size(), simplified, options);
+  require_memory(original.vertices.size(), original.faces.size(), simplified, options);
   return verify(original, simplified, tolerance, used_options(options), progress);
 }
 

@@ -8,10 +8,13 @@
 // rounding. O(pieces); the simplified faces lie in bins (some 200 bytes each), the original is read face by
 // face.
 // Any TIN (verify_distances): the distance to a surface changes no faster than the place (it is 1-Lipschitz),
-// so samples `resolution` apart at most bound it everywhere: largest of the samples + resolution.
+// so it is bounded around every sample. Both surfaces are sampled the finer, the nearer a place may come to
+// the largest distance, until no bound is more than a resolution above the truth.
 //
 //   1 largest_deviation.bound is not below the deviation at any place of the common footprint
-//   2 largest_ratio.bound likewise of deviation / E
+//   2 largest_ratio.bound likewise of deviation / E (distances with a tolerance that varies: of the
+//   original's
+//     places)
 //   3 flipped, folded and degenerate faces are counted one by one, uncovered and surplus area measured
 //   4 the same report for any number of threads
 #pragma once
@@ -37,13 +40,15 @@ struct Tolerance {
 };
 
 struct VerifyOptions {
-  double resolution_m = 0;  // verify_distances: between samples; 0 = from the area, some million samples
-  int threads = 0;          // 0 = all cores
+  // verify_distances: what bounds are above the truth at most; 0 = a 64th of the largest distance or of the
+  // tolerance. Coarser where half a million triangles at once do not do; the report says so.
+  double resolution_m = 0;
+  int threads = 0;  // 0 = all cores
 };
 
 struct Extreme {
   double bound = 0;     // certified, outward
-  double measured = 0;  // at corners of pieces, or at samples
+  double measured = 0;  // at corners of pieces, or at places looked at
   Xyz place;            // CRS; on the simplified TIN
   std::size_t simplified_face = 0;
 };
@@ -75,9 +80,9 @@ struct VerifyReport {
   Area uncovered;                      // of the original's plan that no simplified face covers (vertical)
   Area surplus;                        // of the simplified beyond the original (vertical)
   std::size_t uncovered_vertices = 0;  // of the original
-  double resolution_m = 0;             // places nearer to each other than this are not told apart
+  double resolution_m = 0;             // the bounds are at most about that much above the truth
   std::size_t original_faces = 0, simplified_faces = 0;
-  std::size_t pieces = 0;                        // looked at; of distances: samples
+  std::size_t pieces = 0;                        // looked at; of distances: triangles
   double mean_deviation = 0, rms_deviation = 0;  // at the original's vertices, metres
   Histogram histogram;
   // Simplified less original at each vertex of the original (distance: without sign), metres; NaN where

@@ -60,7 +60,7 @@ class VerifyTin(SimplificationAlgorithm):
             blocks.metres("TOLERANCE", tr("Tolerance (or a raster below)"), None, 0.0),
             blocks.raster("TOLERANCE_RASTER", tr("Tolerance as a raster, cell by cell of the elevation model"), True),
             blocks.number("MOST_POINTS", tr("How many deviation points at most"), 1000, 0, None, integer=True),
-            blocks.advanced(blocks.metres("RESOLUTION", tr("Distance between samples of overhanging TINs (empty: chosen)"))),
+            blocks.advanced(blocks.metres("RESOLUTION", tr("Resolution of the distances of overhanging TINs (empty: chosen)"))),
             blocks.vertical_unit_parameter(),
             blocks.threads_parameter(),
         ]:

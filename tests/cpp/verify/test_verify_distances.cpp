@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // TINs of any shape: known distances, bounds that hold between samples, planted defects.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -93,12 +95,72 @@ TEST(VerifyDistances, a_box_in_a_box) {
   EXPECT_TRUE(found.within_tolerance());
 }
 
-TEST(VerifyDistances, the_same_is_the_same_but_for_the_resolution) {
+TEST(VerifyDistances, the_same_is_the_same) {
   const Tin one = box({0, 0, 0}, {10, 20, 5});
   const VerifyReport found = report_of(one, one, {1});
-  EXPECT_LT(found.largest_deviation.measured, 1e-12);
-  EXPECT_LE(found.largest_deviation.bound, found.resolution_m + 1e-9);
+  EXPECT_LT(found.largest_deviation.bound, 1e-12);
+  EXPECT_EQ(found.pieces, 24u);
   EXPECT_TRUE(found.well_formed());
+}
+
+// Triangles anywhere, in no order.
+Tin random_triangles(unsigned seed, int count) {
+  std::mt19937 random(seed);
+  Tin tin;
+  for (std::int32_t n = 0; n < count; ++n) {
+    const Xyz at = random_place(random, 20) + Xyz{30, 40, 50};
+    for (int corner = 0; corner < 3; ++corner) tin.vertices.push_back(at + random_place(random, 9));
+    tin.faces.push_back({3 * n, 3 * n + 1, 3 * n + 2});
+  }
+  return tin;
+}
+
+// Places drawn on both, against all faces of the other.
+TEST(VerifyDistances, bounds_hold_everywhere) {
+  const auto corners = [](const Tin& tin, std::size_t face) {
+    Triangle3 found;
+    for (std::size_t i = 0; i < 3; ++i) found[i] = tin.vertices[static_cast<std::size_t>(tin.faces[face][i])];
+    return found;
+  };
+  const auto distance = [&](const Tin& tin, const Xyz& p) {
+    double best = 1e300;
+    for (std::size_t n = 0; n < tin.faces.size(); ++n)
+      best = std::min(best, length(nearest_place(corners(tin, n), p) - p));
+    return best;
+  };
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    const Tin original = random_triangles(seed, 12), simplified = random_triangles(seed + 50, 6);
+    std::vector<float> tolerance(original.vertices.size(), 3);
+    if (seed % 2) {
+      for (std::size_t n = 0; n < tolerance.size(); ++n) tolerance[n] = 1 + static_cast<float>(n % 5);
+    }
+    const double resolution = seed % 3 == 0 ? 0 : 0.05;
+    const VerifyReport found = report_of(original, simplified, {0, tolerance}, resolution);
+    double largest = 0, ratio = 0;
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (const bool of_original : {true, false}) {
+      const Tin &from = of_original ? original : simplified, &to = of_original ? simplified : original;
+      for (int n = 0; n < 4000; ++n) {
+        const auto face = static_cast<std::size_t>(random() % from.faces.size());
+        const Triangle3 t = corners(from, face);
+        double u = unit(random), v = unit(random);
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        const double d = distance(to, t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]));
+        largest = std::max(largest, d);
+        if (!of_original) continue;
+        std::array<double, 3> e{};
+        for (std::size_t i = 0; i < 3; ++i)
+          e[i] = static_cast<double>(tolerance[static_cast<std::size_t>(from.faces[face][i])]);
+        ratio = std::max(ratio, d / (e[0] + u * (e[1] - e[0]) + v * (e[2] - e[0])));
+      }
+    }
+    EXPECT_GE(found.largest_deviation.bound, largest);
+    EXPECT_GE(found.largest_ratio.bound, ratio);
+    EXPECT_GE(found.largest_deviation.measured, largest - 0.5);
+    EXPECT_LE(found.largest_deviation.bound - found.largest_deviation.measured, found.resolution_m + 1e-9);
+    EXPECT_LE(found.resolution_m, resolution > 0 ? resolution : found.largest_deviation.bound / 64);
+  }
 }
 
 // A dent that no vertex of either shows: the faces between the same vertices run the other way.
@@ -155,7 +217,8 @@ TEST(VerifyDistances, same_report_for_any_number_of_threads) {
 
 TEST(VerifyDistances, a_resolution_is_chosen_or_refused) {
   const Tin one = box({0, 0, 0}, {10, 10, 10});
-  EXPECT_NEAR(report_of(one, one, {1}, 0).resolution_m, std::sqrt(600 / 1e6), 0.01);
+  const Tin other = box({-1, -1, -1}, {11, 11, 11});
+  EXPECT_LE(report_of(one, other, {1}, 0).resolution_m, std::sqrt(3.0) / 64);
   try {
     report_of(one, one, {1}, -1);
     FAIL();
