@@ -95,6 +95,8 @@ def core_errors(parameter=None, paths=None, rename=None):
         what = in_our_words(str(error)) or tr("Not enough memory.")
         advice = tr("Reduce MAX_DISTANCE or EXTENT, or close other programs.")
         raise QgsProcessingException(f"{what} {advice}") from error
+    except ImportError as error:  # a part of the core that is loaded when first needed
+        raise QgsProcessingException(str(error)) from error
     except RuntimeError as error:
         advice = tr("This is a fault of Sightbound: please report it with the log of this run.")
         raise QgsProcessingException(f"{error} {advice}") from error

@@ -7,6 +7,7 @@ import numpy
 from osgeo import gdal
 from qgis.core import (
     QgsCoordinateTransform,
+    QgsCsException,
     QgsFeature,
     QgsFields,
     QgsProcessing,
@@ -44,7 +45,10 @@ def read_places(algorithm, parameters, name, context, feedback, dem):
         geometry = feature.geometry()
         if geometry.isNull():
             continue
-        geometry.transform(to_dem)
+        try:
+            geometry.transform(to_dem)
+        except QgsCsException as error:
+            raise bad_input(name, tr("feature {} cannot be brought into the CRS of INPUT.").format(feature.id())) from error
         copy = QgsFeature()
         copy.setGeometry(geometry)
         writer.addFeature(copy)
@@ -55,17 +59,15 @@ def read_places(algorithm, parameters, name, context, feedback, dem):
 
 def samples_in(path, dem):
     """An array on the DEM's grid, 1 where a feature touches the cell; None without a path. Any thread."""
-    return None if path is None else _touched(path, dem).ReadAsArray().astype("float32")
+    return None if path is None else _touched(path, dem, "KEEP").ReadAsArray().astype("float32")
 
 
 def distances_from(path, dem, name):
     """Metres from each sample to the nearest cell that a feature touches, less a cell's diagonal: never too many. Any thread."""
-    touched = _touched(path, dem)
+    touched = _touched(path, dem, name)
     _, across, turn, _, _, down = touched.GetGeoTransform()
     if turn or abs(abs(across) - abs(down)) > 1e-6 * abs(across):
         raise bad_input(name, tr("the cells of INPUT must be square and not rotated; resample it (Warp)."))
-    if not touched.ReadAsArray().any():
-        raise bad_input(name, tr("no feature lies on INPUT; check its CRS."))
     rows, cols = touched.RasterYSize, touched.RasterXSize
     cells = gdal.GetDriverByName("MEM").Create("", cols, rows, 1, gdal.GDT_Float32)
     gdal.ComputeProximity(touched.GetRasterBand(1), cells.GetRasterBand(1), ["VALUES=1", "DISTUNITS=PIXEL"])
@@ -73,10 +75,12 @@ def distances_from(path, dem, name):
     return numpy.maximum(cells.ReadAsArray() - math.sqrt(2.0), 0.0) * (metres if dem.crs.isValid() else abs(across))
 
 
-def _touched(path, dem):
+def _touched(path, dem, name):
     heights = gdal.Open(dem.path)
     touched = gdal.GetDriverByName("MEM").Create("", heights.RasterXSize, heights.RasterYSize, 1, gdal.GDT_Byte)
     touched.SetGeoTransform(heights.GetGeoTransform())
     features = gdal.OpenEx(path, gdal.OF_VECTOR)
     gdal.RasterizeLayer(touched, [1], features.GetLayer(0), burn_values=[1], options=["ALL_TOUCHED=TRUE"])
+    if not touched.ReadAsArray().any():
+        raise bad_input(name, tr("no feature lies on INPUT; check its CRS."))
     return touched

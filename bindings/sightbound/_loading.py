@@ -20,8 +20,8 @@ def _load(name: str) -> ModuleType:
         return importlib.import_module(f"{__package__}.{name}")
     except ImportError as error:
         raise ImportError(
-            f"The compiled part of sightbound cannot be loaded by Python {sys.version.split()[0]} ({error}). "
-            f"Build it with the interpreter that is to use it: cmake -DPython_EXECUTABLE={sys.executable or 'python3'}"
+            f"The compiled part {name} of sightbound cannot be loaded by Python {sys.version.split()[0]} ({error}). "
+            f"Install the library that is missing, or build sightbound with the interpreter that is to use it: cmake -DPython_EXECUTABLE={sys.executable or 'python3'}"
         ) from error
     finally:
         if flags is not None:

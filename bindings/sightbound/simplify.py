@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ._quantities import Quantity
 
 _DEFAULTS = core.defaults()
+_LARGEST = 10000.0  # metres, of tolerances as of errors
 
 
 class SimplifiedTin(Tin):
@@ -65,9 +66,10 @@ def dem_to_tin(
             volume. Its vertical_rmse says how much the measured heights may be wrong; an estimate from the DEM cannot.
         confidence: of the error, between 0 and 1.
         extent: (x_min, y_min, x_max, y_max) in the DEM's CRS, snapped outward to its cells; None for the whole DEM.
-        keep: array [rows, cols] on the DEM's grid, in its row order: samples that stay vertices, at their own height, where not 0.
+        keep: array [rows, cols] on the DEM's grid, in its row order: samples that stay vertices, at their own height, where above 0.
         keep_border: keep all samples of the outline and of holes, so that neighbouring tiles fit.
-        target_faces: stop at that many faces, the cheapest removed first; None to remove all that can be.
+        target_faces: stop at that many faces (give or take one), the cheapest removed first; still within the tolerance, so that more
+            may be left. None to remove all that can be.
         threads: None for all cores.
         memory_budget: bytes; None for three quarters of the memory.
         progress: called with the fraction done, at most ten times a second; False cancels.
@@ -91,9 +93,15 @@ def dem_to_tin(
     options.threads = arguments.threads(threads)
     options.memory_budget = arguments.memory_budget(memory_budget)
     model = error_model if tolerance is None else _as_model(tolerance, dem)
-    made, report = core.dem_to_tin(core_dem(dem), core_model(model, dem), options, progress)
+    try:
+        made, report = core.dem_to_tin(core_dem(dem), core_model(model, dem), options, progress)
+    except (ValueError, OSError) as error:
+        if tolerance is None:
+            raise
+        raise type(error)(_of_tolerance(str(error))) from None
     if tolerance is not None:
         report["error_model"] = None
+        report["warnings"] = [_of_tolerance(warning) for warning in report["warnings"]]
     report["version"] = core.__version__
     return _wrapped(made, report)
 
@@ -103,8 +111,8 @@ def _as_model(tolerance: Quantity, dem: Dem) -> ErrorModel:
     value = quantities.from_argument("tolerance", tolerance)
     if hasattr(value, "shape"):
         _like("tolerance", value, dem)
-    if isinstance(value, float) and not 0 <= value < float("inf"):
-        raise ValueError(f"tolerance is {value}; give metres, 0 or more.")
+    if isinstance(value, float) and not 0 <= value <= _LARGEST:
+        raise ValueError(f"tolerance is {value:g}; give metres, 0 to {_LARGEST:g}.")
     return ErrorModel(vertical_rmse=tolerance, horizontal_rmse=0, geologic_variation=0)
 
 
@@ -115,8 +123,13 @@ def _like(name: str, given: Any, dem: Dem) -> FloatArray:
     return values
 
 
+def _of_tolerance(message: str) -> str:
+    """The core knows a tolerance as an error."""
+    return message.replace("vertical_rmse", "tolerance").replace("The error raster", "The tolerance raster")
+
+
 def _count(faces: Any) -> int:
-    if isinstance(faces, bool) or int(faces) != faces or faces < 1:
+    if isinstance(faces, bool) or not 1 <= faces < 2**31 or int(faces) != faces:
         raise ValueError(f"target_faces is {faces!r}; it must be a whole number of 1 or more.")
     return int(faces)
 

@@ -142,7 +142,10 @@ class Reader {
   }
 
   bool read_block(int col, int row) {
-    if (floats_ && floats_->read(col, row, reinterpret_cast<float*>(stored_.data()))) return true;
+    if (floats_) {
+      const FloatTiles::Found found = floats_->read(col, row, reinterpret_cast<float*>(stored_.data()));
+      if (found != FloatTiles::Found::kAskGdal) return found == FloatTiles::Found::kValues;
+    }
     return band_->ReadBlock(col, row, stored_.data()) == CE_None;
   }
 

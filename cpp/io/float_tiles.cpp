@@ -41,23 +41,24 @@ std::int64_t FloatTiles::number(const std::string& key) const {
   return text != nullptr ? std::strtoll(text, nullptr, 10) : -1;
 }
 
-bool FloatTiles::read(int block_col, int block_row, float* values) {
+FloatTiles::Found FloatTiles::read(int block_col, int block_row, float* values) {
   const std::string block = std::to_string(block_col) + "_" + std::to_string(block_row);
   const std::int64_t offset = number("BLOCK_OFFSET_" + block), size = number("BLOCK_SIZE_" + block);
   // Packed, a block is hardly larger than unpacked: anything else is damage.
-  if (offset <= 0 || size <= 0 || static_cast<std::size_t>(size) > 2 * bytes_.size() + 1024) return false;
+  if (offset <= 0 || size <= 0 || static_cast<std::size_t>(size) > 2 * bytes_.size() + 1024)
+    return Found::kAskGdal;
   packed_.resize(static_cast<std::size_t>(size));
   if (VSIFSeekL(file_.get(), static_cast<vsi_l_offset>(offset), SEEK_SET) != 0 ||
       VSIFReadL(packed_.data(), 1, packed_.size(), file_.get()) != packed_.size())
-    return false;
+    return Found::kAskGdal;
   std::size_t unpacked = 0;
-  if (CPLZLibInflate(packed_.data(), packed_.size(), bytes_.data(), bytes_.size(), &unpacked) == nullptr ||
-      unpacked != bytes_.size())
-    return false;
+  if (CPLZLibInflate(packed_.data(), packed_.size(), bytes_.data(), bytes_.size(), &unpacked) == nullptr)
+    return Found::kDamage;
+  if (unpacked != bytes_.size()) return Found::kAskGdal;
   const auto n = static_cast<std::size_t>(cols_);
   for (std::size_t row = 0; row < static_cast<std::size_t>(rows_); ++row)
     undo_float_predictor(bytes_.data() + row * n * sizeof(float), n, values + row * n);
-  return true;
+  return Found::kValues;
 }
 
 void undo_float_predictor(std::uint8_t* bytes, std::size_t n, float* values) {

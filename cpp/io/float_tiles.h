@@ -19,8 +19,10 @@ class FloatTiles {
   // Null when the band is stored otherwise. Keeps a pointer to the band; for one thread.
   static std::unique_ptr<FloatTiles> of(GDALRasterBand* band, const std::string& path);
 
-  // The whole block, row by row. False when it is absent, cut short or damaged: GDAL can tell which.
-  bool read(int block_col, int block_row, float* values);
+  // The whole block, row by row; or nothing: when it is absent or the last strip is cut short, GDAL can tell
+  // what it holds. GDAL does not tell of every damage.
+  enum class Found { kValues, kAskGdal, kDamage };
+  Found read(int block_col, int block_row, float* values);
 
  private:
   struct CloseFile {

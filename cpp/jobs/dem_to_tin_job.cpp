@@ -54,12 +54,20 @@ Grid<std::uint8_t> kept_in(const Window& window, const DemSource& source, const 
   }
   Grid<std::uint8_t> kept(window.rows, window.cols);
   for (int r = 0; r < window.rows; ++r) {
-    for (int c = 0; c < window.cols; ++c) kept.at(r, c) = keep->at(window.row + r, window.col + c) != 0;
+    for (int c = 0; c < window.cols; ++c) kept.at(r, c) = keep->at(window.row + r, window.col + c) > 0;
   }
   return kept;
 }
 
+constexpr double kMuchForRounding = 0.01;  // of the tolerance
+
 void say_what_stays(DemToTin& result) {
+  const double kept = result.simplified.report.kept_for_rounding_m;
+  if (kept > kMuchForRounding * result.least_tolerance_m && result.least_tolerance_m > kLeastSigma) {
+    result.warnings.push_back(
+        "Rounding takes " + number_text(kept) +
+        " m of the tolerance: somewhere the DEM rises absurdly. Make such heights nodata.");
+  }
   if (result.least_tolerance_m > kLeastSigma) return;
   result.warnings.push_back(
       (result.largest_tolerance_m > kLeastSigma ? "Some samples count" : std::string("The samples count")) +

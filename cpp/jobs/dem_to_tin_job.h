@@ -25,7 +25,7 @@ struct DemToTinOptions {
   double confidence = 0.95;      // with kConfidence
   std::optional<Extent> extent;  // snapped outward to the DEM's grid; empty = the whole DEM
   SharedGrid
-      keep;  // on the grid of the whole DEM: samples that stay vertices at their own height where not 0
+      keep;  // on the grid of the whole DEM: samples that stay vertices at their own height where above 0
   bool keep_border = false;       // all samples of the outline and of holes stay: neighbouring tiles fit
   std::int64_t target_faces = 0;  // 0 = until nothing can be removed
   int threads = 0;                // 0 = all cores

@@ -5,6 +5,8 @@
 //   d - E <= w (z - known) <= d + E
 #include "simplify/envelope.h"
 
+#include <limits>
+
 namespace sightbound {
 
 Envelope::Envelope(const Original& original) : original_(original), margin_(2 * original.rounding()) {}
@@ -47,6 +49,7 @@ void Envelope::narrow_inside(const Point& a, const Point& b, const Point& p, dou
   const double area = area2(a, b, p), per_area = 1 / area, rise = (b.z - a.z) * per_area;
   const double ex = a.y - b.y, ey = b.x - a.x, fx = p.y - a.y, fy = a.x - p.x;
   double low = (z.low - a.z) * per_area, high = (z.high - a.z) * per_area;  // per unit of e
+  bool all_seen = true;
   Original::for_samples(a, b, p, [&](int row, int begin, int end) {
     const float* height = original_.heights(row);
     const float* tolerance = kVarying ? original_.tolerances(row) : nullptr;
@@ -59,9 +62,13 @@ void Envelope::narrow_inside(const Point& a, const Point& b, const Point& p, dou
       if (d - allowed > e * low) low = (d - allowed) / e;
       if (d + allowed < e * high) high = (d + allowed) / e;
     }
-    return low - high <= most * per_area;
+    all_seen = low - high <= most * per_area;
+    return all_seen;
   });
   z = {a.z + low * area, a.z + high * area};
+  // What was not looked at must not pass by a rounding.
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (!all_seen && z.missing() <= most) z = {kNone, -kNone};
 }
 
 namespace {

@@ -19,6 +19,7 @@ namespace sightbound {
 namespace {
 
 constexpr std::size_t kBytesPerSample = 170;  // mesh 88, quadrics 40, states 12, tiles 8, and growth
+constexpr std::size_t kBytesOfQueue = 170;    // more, with a target: all edges in one queue, stale ones too
 constexpr std::size_t kMostSamples = std::size_t{1} << 28;  // eight corners each, numbered in 31 bits
 
 void check(const DemTerrain& terrain, const SimplifyOptions& options) {
@@ -113,7 +114,8 @@ float rounded_up(double value) {
 }
 
 // What the mesh has become, with the largest deviation on each face.
-void write(const PlanMesh& mesh, const DemTerrain& terrain, const Original& original, SimplifiedTin& result) {
+void write(const PlanMesh& mesh, const DemTerrain& terrain, const Original& original, SimplifiedTin& result,
+           Progress& progress) {
   Tin& tin = result.tin;
   const Geotransform& map = terrain.geotransform;
   tin.crs_wkt = terrain.crs_wkt;
@@ -138,6 +140,7 @@ void write(const PlanMesh& mesh, const DemTerrain& terrain, const Original& orig
   tin.faces.reserve(mesh.count_faces());
   deviation.values.reserve(tin.faces.capacity());
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangles()); ++t) {
+    if (t % 4096 == 0) progress.check();
     if (!mesh.alive(t)) continue;
     const std::int32_t a = mesh.vertex(4 * t), b = mesh.vertex(4 * t + 1), c = mesh.vertex(4 * t + 2);
     const std::int32_t first = vertex_of(a), second = vertex_of(b), third = vertex_of(c);
@@ -157,17 +160,21 @@ void write(const PlanMesh& mesh, const DemTerrain& terrain, const Original& orig
 SimplifiedTin simplify_dem(const DemTerrain& terrain, const SimplifyOptions& options, Progress& progress) {
   check(terrain, options);
   MemoryBudget(options.memory_bytes)
-      .require(terrain.heights.size() * kBytesPerSample, "Simplifying the DEM", "Give a part of it.");
+      .require(terrain.heights.size() * (kBytesPerSample + (options.target_faces > 0 ? kBytesOfQueue : 0)),
+               "Simplifying the DEM", "Give a part of it.");
   const Workers workers(options.threads);
   SimplifiedTin result;
   const Original original(terrain.heights, options.tolerance, options.tolerance_m);
+  progress.check();
   PlanMesh mesh(terrain.heights);
+  progress.check();
   result.report.faces_before = mesh.count_faces();
+  result.report.kept_for_rounding_m = 2 * original.rounding();
   if (result.report.faces_before == 0)
     throw InvalidInput("The DEM has no three samples side by side that are not nodata: it makes no surface.");
   fix(mesh, options);
   decimate(mesh, original, options, workers, progress);
-  write(mesh, terrain, original, result);
+  write(mesh, terrain, original, result, progress);
   return result;
 }
 

@@ -47,6 +47,7 @@ struct SimplifyReport {
   std::size_t faces_before = 0, faces_after = 0;
   double largest_deviation_m = 0;  // certified: nowhere more
   double largest_ratio = 0;        // of deviation to tolerance, certified; 0 where both are 0
+  double kept_for_rounding_m = 0;  // of the tolerance
 };
 
 struct SimplifiedTin {

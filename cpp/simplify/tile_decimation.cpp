@@ -5,7 +5,7 @@ namespace sightbound {
 
 namespace {
 
-constexpr std::size_t kCheckEvery = 1024;  // edges or vertices
+constexpr std::size_t kCheckEvery = 128;  // edges or vertices
 
 // f(corner, w) for each neighbour w of v; the corner is at one of the two, its next at the other.
 template <class F>

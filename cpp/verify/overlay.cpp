@@ -141,7 +141,8 @@ PieceSummary Overlay::pieces_of(std::size_t first, std::size_t last, CoveredShar
 double Overlay::deviation_at(const Xyz& place) const {
   const Xy p{place.x, place.y};
   double found = std::numeric_limits<double>::quiet_NaN();
-  simplified.each_near({p, p}, [&](std::size_t number) {
+  const double around = simplified.margin();
+  simplified.each_near({{p.x - around, p.y - around}, {p.x + around, p.y + around}}, [&](std::size_t number) {
     const PlanFace& face = simplified.faces()[number];
     for (std::size_t side = 0; side < 3; ++side) {
       if (face.inside(side, p) < -simplified.margin()) return;

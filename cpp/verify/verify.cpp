@@ -41,6 +41,11 @@ Reach reach_of(const OriginalSurface& original, const Tin& simplified) {
   return reach;
 }
 
+// Places of either came through coordinates of the CRS, each of them rounded a few times.
+double rounding_in_crs(const Tin& tin) {
+  return 0x1p-50 * std::max(std::abs(tin.origin.x), std::abs(tin.origin.y)) * tin.metres_per_unit;
+}
+
 std::vector<PlanFace> plan_faces(const Tin& tin, double margin) {
   std::vector<PlanFace> faces;
   faces.reserve(tin.faces.size());
@@ -127,7 +132,7 @@ VerifyReport verify_heights(const OriginalSurface& original, const Tin& simplifi
   check_tolerance(tolerance, used);
   const Workers workers(options.threads);
   const Reach reach = reach_of(original, simplified);
-  const double margin = plan_margin(reach.plan);
+  const double margin = plan_margin(reach.plan) + rounding_in_crs(simplified);
 
   progress.begin(0.2, 1);
   const PlanBins bins(plan_faces(simplified, margin), margin);

@@ -58,7 +58,7 @@ def test_a_missing_core_is_explained(tmp_path):
         (folder / file.name).write_bytes(file.read_bytes())
     job = subprocess.run([sys.executable, "-c", f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import sightbound"],
                          capture_output=True, text=True)
-    assert "compiled part of sightbound cannot be loaded by Python" in job.stderr and "-DPython_EXECUTABLE" in job.stderr
+    assert "compiled part _core of sightbound cannot be loaded by Python" in job.stderr and "-DPython_EXECUTABLE" in job.stderr
 
 
 def test_public_names():

@@ -86,6 +86,18 @@ TEST(DemToTin, ExactSamplesAreToldOf) {
   EXPECT_TRUE(says(made.warnings.back(), "count as exact"));
 }
 
+TEST(DemToTin, AnAbsurdHeightIsToldOf) {
+  std::vector<float> heights(100, 50.0f);
+  heights[33] = -1e30f;
+  const ArrayDem dem({heights.data(), 10, 10, std::numeric_limits<double>::quiet_NaN(), 1, nullptr},
+                     Geotransform({0, 1, 0, 0, 0, -1}), "");
+  Progress progress;
+  const DemToTin made = run_dem_to_tin(dem, error(0.5), {}, progress);
+  bool told = false;
+  for (const std::string& warning : made.warnings) told = told || warning.find("Rounding takes") == 0;
+  EXPECT_TRUE(told);
+}
+
 TEST(DemToTin, RefusesWhatItCannotHold) {
   DemToTinOptions options;
   options.memory_budget = 100;
