@@ -9,7 +9,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../scripts/setup.sh"
 
 build_folder=${SIGHTBOUND_BUILD:-build}
 cmake -B "$build_folder" -DSIGHTBOUND_BENCHMARKS=ON >/dev/null
-cmake --build "$build_folder" --target bench_volume bench_volume_sight
+cmake --build "$build_folder" --target bench_volume bench_volume_sight bench_volume_rays
 bench=$build_folder/benchmarks/bench_volume
 
 folder=${SIGHTBOUND_BENCH_DIR:-${TMPDIR:-/tmp}/sightbound-bench-$(id -u)}
@@ -34,5 +34,7 @@ echo "-- sigma"
 for sigma in 1 5 10; do "$bench" "$(dem 500)" bounds columns $sigma 2; done
 echo "-- voxels (alpha = 4.9 m / voxel)"
 for voxel in 1 4 8; do "$bench" "$(dem 500)" bounds columns 2.5 $voxel; done
+echo "-- lines against OpenVDB's own means"
+"$build_folder/benchmarks/bench_volume_rays" "$(dem 1000)" 2.5 2
 echo "-- lines and a viewshed"
 "$build_folder/benchmarks/bench_volume_sight" "$(dem 1000)" 2.5 2
