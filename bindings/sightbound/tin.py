@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from math import inf
-
 from . import _arguments as arguments
 from ._loading import core
 from .dem import core_dem
