@@ -181,6 +181,25 @@ def test_wrong_arguments_are_named(dem, arguments, message):
         sb.dem_to_tin(dem, **arguments)
 
 
+@pytest.mark.parametrize("step, turn", [(0.3, 0.0), (10.0, 4.0), (0.3, 0.01)])
+def test_coordinates_that_are_rounded_leave_nothing_uncovered(step, turn):
+    dem = sb.Dem(hills(), (WEST + 0.1, step, turn, NORTH + 0.7, turn, -step), crs())
+    found = sb.verify(dem, sb.dem_to_tin(dem, tolerance=2.0), 2.0)
+    assert found.within_tolerance and found.well_formed and found.report["uncovered_vertices"] == 0
+    assert found.report["uncovered"]["m2"] == found.report["surplus"]["m2"] == 0
+
+
+def test_what_is_wrong_with_a_tolerance_is_called_so(dem, tmp_path):
+    negative = np.ones(dem.shape)
+    negative[3, 3] = -1
+    for tolerance in (1e5, negative):
+        with pytest.raises(ValueError, match="^tolerance") as found:
+            sb.dem_to_tin(dem, tolerance=tolerance)
+        assert "vertical_rmse" not in str(found.value)
+    with pytest.raises(OSError, match="tolerance raster"):
+        sb.dem_to_tin(dem, tolerance=str(tmp_path / "none.tif"))
+
+
 def test_degrees_are_refused():
     dem = sb.Dem(hills(), (8.0, 0.001, 0, 47.0, 0, -0.001), crs(4326))
     with pytest.raises(ValueError, match="[Rr]eproject"):

@@ -87,6 +87,14 @@ def test_places_to_keep(run, dem, observers, tmp_path):
     assert extent.xMinimum() == scenes.WEST + 5 and extent.yMaximum() == scenes.NORTH - 5
 
 
+@pytest.mark.parametrize("parameters", [{"KEEP": 0}, {"FOCUS": 0, "FOCUS_GROWTH": 1.0}])
+def test_places_beside_the_elevation_model_are_refused(run, dem, tmp_path, parameters):
+    beside = str(scenes.write_points(tmp_path / "beside.gpkg", [(scenes.WEST - 5000.0, scenes.NORTH, {})], {}))
+    parameters = {name: value or beside for name, value in parameters.items()}
+    with pytest.raises(QgsProcessingException, match=next(iter(parameters)) + ": no feature lies on INPUT"):
+        simplify(run, dem, tmp_path, **parameters)
+
+
 def test_the_tolerance_grows_with_the_distance_from_the_focus(run, dem, tmp_path):
     focus = str(scenes.write_points(tmp_path / "focus.gpkg", [(scenes.WEST + 15.0, scenes.NORTH - 15.0, {})], {}))
     found = simplify(run, dem, tmp_path, TOLERANCE=0.2, FOCUS=focus, FOCUS_GROWTH=10.0)
