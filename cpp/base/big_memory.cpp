@@ -30,6 +30,12 @@ void* allocate_big(std::size_t bytes) {
   return memory;
 }
 
+void* allocate_big_zeroed(std::size_t bytes) {
+  void* memory = std::calloc(bytes > 0 ? bytes : 1, 1);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
 void release_big(void* memory) noexcept { std::free(memory); }
 
 }  // namespace sightbound

@@ -209,6 +209,14 @@ class Run {
   Progress& progress_;
 };
 
+CanvasStart start_of_canvas(const Post& first, const Plan& plan, const ViewshedOptions& options) {
+  const Observer& o = first.observer;
+  const bool everywhere = first.targets == plan.canvas && o.min_distance <= 0 &&
+                          o.max_distance >= Observer().max_distance && o.azimuth_to - o.azimuth_from >= 360 &&
+                          o.angle_from <= -90 && o.angle_to >= 90;
+  return everywhere && !options.heights ? CanvasStart::kAllHidden : CanvasStart::kNobodyAsked;
+}
+
 // Areas of the combined verdict. One observer's are those already counted.
 void total_areas(const DemSource& source, const Georeference& georeference, const Window& window,
                  const Canvas& canvas, ViewshedReport& report, const Workers& workers, Progress& progress) {
@@ -264,7 +272,8 @@ ViewshedResult run_viewshed(const DemSource& source, const std::vector<Observer>
   const ErrorModel completed = complete_model(model, source, report.warnings, progress);
   report.error_model = completed.describe();
 
-  Canvas canvas(plan.canvas, options.combine == Combine::kBest, options.heights, workers, progress);
+  Canvas canvas(plan.canvas, start_of_canvas(posts.front(), plan, options), options.combine == Combine::kBest,
+                options.heights, workers, progress);
   if (observers.size() > 1) canvas.start_counting(workers, progress);
   Run run(source, georeference, completed, options, workers, canvas, plan.canvas, report, progress);
   if (plan.together) {

@@ -8,6 +8,10 @@
 
 namespace sightbound {
 
+namespace {
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+}
+
 inline void Canvas::put(int row, int col, float p, std::uint8_t claim) {
   const int r = row - window_.row, c = col - window_.col;
   if (fresh_) {
@@ -32,6 +36,7 @@ void Canvas::hide(int row, int col, int run, bool along_row) {
     for (int i = 0; i < run; ++i) put(along_row ? row : row + i, along_row ? col + i : col, 0, kHidden);
     return;
   }
+  if (start_ == CanvasStart::kAllHidden) return;
   float* p = &confidence.at(row - window_.row, col - window_.col);
   std::uint8_t* claim = &verdict.at(row - window_.row, col - window_.col);
   if (along_row) {
@@ -45,9 +50,13 @@ void Canvas::hide(int row, int col, int run, bool along_row) {
   }
 }
 
-namespace {
+void Canvas::leave(int row, int col) {
+  if (!fresh_ || start_ == CanvasStart::kNobodyAsked) return;
+  confidence.at(row - window_.row, col - window_.col) = kNan;
+  verdict.at(row - window_.row, col - window_.col) = kNoVerdict;
+}
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+namespace {
 
 // What one block of the fan does with its targets.
 class Painter {
@@ -78,16 +87,23 @@ class Painter {
       const int minor = column.first_minor + i;
       const int row = column.transposed ? column.major : minor,
                 col = column.transposed ? minor : column.major;
-      const bool hidden = column.state[i] == kSurelyHidden;
+      const bool hidden = column.all_hidden() || column.state[i] == kSurelyHidden;
       if (plain && hidden) {
-        int run = 1;
+        int run = column.all_hidden() ? to - i : 1;
         while (i + run < to && column.state[i + run] == kSurelyHidden) ++run;
         canvas_.hide(row, col, run, column.transposed);
-        for (int r = 0; r < run; ++r) totals_.hidden_m2 += area(column.transposed ? row : row + r);
+        if (column.transposed) {
+          totals_.hidden_m2 += run * area(row);
+        } else {
+          for (int r = 0; r < run; ++r) totals_.hidden_m2 += area(row + r);
+        }
         i += run - 1;
         continue;
       }
-      if (!has_target(row, col) || (by_place && !asked(row, col))) continue;
+      if (!has_target(row, col) || (by_place && !asked(row, col))) {
+        canvas_.leave(row, col);
+        continue;
+      }
       if (hidden && !canvas_.has_heights()) {
         put(row, col, -scene_.largest_ratio);
         continue;
@@ -105,7 +121,11 @@ class Painter {
   void paint_own_sample() {
     const int row = view_.eye.base_row, col = view_.eye.base_col;
     // It has no direction that limits could exclude.
-    if (!canvas_.holds(row, col) || !has_target(row, col) || view_.limits.min_distance > 0) return;
+    if (!canvas_.holds(row, col)) return;
+    if (!has_target(row, col) || view_.limits.min_distance > 0) {
+      canvas_.leave(row, col);
+      return;
+    }
     put(row, col, scene_.largest_ratio);
     if (canvas_.has_heights()) canvas_.put_heights(row, col, 0, 0);
   }
@@ -193,8 +213,17 @@ bool ViewLimits::admits_azimuth(double azimuth_deg) const {
   return beyond <= span;
 }
 
-Canvas::Canvas(const Window& window, bool best, bool heights, const Workers& workers, Progress& progress)
-    : confidence(window.rows, window.cols), verdict(window.rows, window.cols), window_(window), best_(best) {
+Canvas::Canvas(const Window& window, CanvasStart start, bool best, bool heights, const Workers& workers,
+               Progress& progress)
+    : window_(window), start_(start), best_(best) {
+  if (start == CanvasStart::kAllHidden) {
+    confidence = Grid<float>::zeros(window.rows, window.cols);
+    static_assert(kHidden == 0);
+    verdict = Grid<std::uint8_t>::zeros(window.rows, window.cols);
+    return;
+  }
+  confidence = Grid<float>(window.rows, window.cols);
+  verdict = Grid<std::uint8_t>(window.rows, window.cols);
   if (heights) {
     certain_height = Grid<float>(window.rows, window.cols);
     likely_height = Grid<float>(window.rows, window.cols);

@@ -26,12 +26,17 @@ struct ViewLimits {
   bool admits_azimuth(double azimuth_deg) const;
 };
 
+// What a cell holds before anything is put there. Hidden is for a first observer who is asked about every
+// cell: most are hidden, and then cost nothing (Grid::zeros). Not with heights.
+enum class CanvasStart { kNobodyAsked, kAllHidden };
+
 // Several observers' answers put together cell by cell: best = seen by any, worst = seen by all that have the
 // cell in range.
 class Canvas {
  public:
   // `window` is in the scene's grid.
-  Canvas(const Window& window, bool best, bool heights, const Workers&, Progress&);  // only checks it
+  Canvas(const Window& window, CanvasStart, bool best, bool heights, const Workers&,
+         Progress&);  // only checks the progress
 
   const Window& window() const { return window_; }
   bool has_heights() const { return !certain_height.empty(); }
@@ -44,6 +49,8 @@ class Canvas {
   void next_observer() { fresh_ = false; }
 
   void put(int row, int col, float p, std::uint8_t verdict);
+  // Nobody can be asked about the cell.
+  void leave(int row, int col);
   // The same for a run of hidden cells along a row or down a column.
   void hide(int row, int col, int run, bool along_row);
   void put_heights(int row, int col, float certain, float likely);
@@ -61,6 +68,7 @@ class Canvas {
 
  private:
   Window window_;
+  CanvasStart start_;
   bool best_, fresh_ = true;
 };
 

@@ -60,6 +60,14 @@ class Grid {
       : rows_(rows), cols_(cols), data_(static_cast<T*>(allocate_big(size() * sizeof(T)))) {}
   Grid(int rows, int cols, T fill) : Grid(rows, cols) { std::fill_n(data_.get(), size(), fill); }
 
+  // All 0. Costs nothing until cells are written (big_memory.h).
+  static Grid zeros(int rows, int cols) {
+    Grid grid;
+    grid.rows_ = rows, grid.cols_ = cols;
+    grid.data_.reset(static_cast<T*>(allocate_big_zeroed(grid.size() * sizeof(T))));
+    return grid;
+  }
+
   int rows() const { return rows_; }
   int cols() const { return cols_; }
   std::size_t size() const { return static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_); }

@@ -97,9 +97,10 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
   const WedgeFan fan(scene, eye, tops, 1e9);
 
   std::set<std::pair<int, int>> visited;
-  int hidden = 0, open = 0, cleared = 0;
+  int hidden = 0, open = 0, cleared = 0, leapt = 0;
   for (std::size_t block = 0; block < fan.blocks(); ++block) {
     fan.march(block, [&](const FanColumn& column, const WedgeFan::OpenPartsOf& parts_of) {
+      leapt += column.all_hidden();
       for (int i = 0; i < column.count; ++i) {
         const int minor = column.first_minor + i;
         const int row = column.transposed ? column.major : minor,
@@ -109,7 +110,7 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
         const SightLine line(scene, eye,
                              {double(col - base_col), double(row - base_row), tops.at(row, col), 0});
         const double truth = by_every_place(scene, line);
-        if (column.state[i] == kSurelyHidden) {
+        if (column.all_hidden() || column.state[i] == kSurelyHidden) {
           ++hidden;
           EXPECT_EQ(truth, -scene.largest_ratio) << row << " " << col;
         } else {
@@ -129,6 +130,7 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
   EXPECT_GT(hidden, 100);
   EXPECT_GT(open, 100);
   EXPECT_GT(cleared, 10);
+  if (test.rows > 100) EXPECT_GT(leapt, 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, Bracket,
@@ -136,6 +138,8 @@ INSTANTIATE_TEST_SUITE_P(Places, Bracket,
                                          Case{0.5f, 0, 0, false}, Case{0.5f, 89, 69, false},
                                          Case{0.2f, 17.5, 68.9, true}, Case{2.0f, 40, 30, true},
                                          Case{0, 130.4, 20.2, false, true, 260, 300},
+                                         Case{0.3f, 20.4, 130.2, true, false, 261, 303},
+                                         Case{0.3f, 301.5, 3, true, false, 260, 303},
                                          Case{0, 40, 30, true, true}));
 
 }  // namespace
