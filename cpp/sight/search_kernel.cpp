@@ -85,21 +85,20 @@ void scan_nodes(const ScannedLine& line, const NodeScan& s, std::int32_t* __rest
   }
 }
 
+namespace {
+
 // Between two columns the line crosses, of the cells j and j + 1, at most the row between them and both
 // diagonals. Terrain and line are linear from crossing to crossing, so the least clearance of all is at one
 // of them, or less by what the terrain varies over the pad.
-SIGHTBOUND_VECTOR
-void bound_steps(const ScannedLine& line, const StepScan& s, float* __restrict ratio) {
+template <bool kUniform>
+SIGHTBOUND_INLINE void bound_sixteen(const ScannedLine& line, const StepScan& s, float* __restrict ratio) {
   Ends ends;
   ends_of_parts(line, s.xi, s.xi_step, ends);
   const float* __restrict heights = s.heights;
-  const float* __restrict widest = s.widest != nullptr ? s.widest : s.heights;
-  const float uniform_counts = s.widest == nullptr ? 1.0f : 0.0f;
+  const float* __restrict widest = s.widest;
   const int last_row = line.minors - 1, last_step = s.steps - 1, major_stride = s.major_stride,
             minor_stride = s.minor_stride;
-  // Without a pyramid of sigma the same sample is read for nothing.
-  const int widest_along = s.widest == nullptr ? 0 : s.widest_major_stride,
-            widest_across = s.widest == nullptr ? 0 : s.widest_minor_stride;
+  const int widest_along = s.widest_major_stride, widest_across = s.widest_minor_stride;
   const float last_minor = static_cast<float>(last_row), last_cell = static_cast<float>(last_row - 1);
   const float rise = line.rise, drop = line.drop, eye = line.eye, rim = line.rim, pad = s.minor_pad,
               share_pad = line.share_pad;
@@ -118,10 +117,13 @@ void bound_steps(const ScannedLine& line, const StepScan& s, float* __restrict r
                 a2 = heights[near + j2 * minor_stride];
     const float b0 = heights[far + j * minor_stride], b1 = heights[far + (j + 1) * minor_stride],
                 b2 = heights[far + j2 * minor_stride];
-    const int node = (((first_step + step) >> 2) - first_node) * widest_along;
-    const float wide =
-        larger(widest[node + (j >> 2) * widest_across], widest[node + (next >> 2) * widest_across]);
-    const float most = (uniform_counts != 0 ? uniform : wide) + moving;
+    float most = uniform + moving;
+    if constexpr (!kUniform) {
+      const int node = (((first_step + step) >> 2) - first_node) * widest_along;
+      const float wide =
+          larger(widest[node + (j >> 2) * widest_across], widest[node + (next >> 2) * widest_across]);
+      most = wide + moving;
+    }
 
     const float row = static_cast<float>(j);
     const float v_a = within(ends.minor_a[i] - row, 0, 2), v_b = within(ends.minor_b[i] - row, 0, 2),
@@ -159,6 +161,22 @@ void bound_steps(const ScannedLine& line, const StepScan& s, float* __restrict r
     const float trimmed = bound - kFloatRounding * magnitude(bound);
     ratio[i] = said > 0 ? trimmed : -kNoRatio;
   }
+}
+
+SIGHTBOUND_VECTOR
+void bound_uniform(const ScannedLine& line, const StepScan& s, float* __restrict ratio) {
+  bound_sixteen<true>(line, s, ratio);
+}
+
+SIGHTBOUND_VECTOR
+void bound_varied(const ScannedLine& line, const StepScan& s, float* __restrict ratio) {
+  bound_sixteen<false>(line, s, ratio);
+}
+
+}  // namespace
+
+void bound_steps(const ScannedLine& line, const StepScan& s, float* ratio) {
+  s.widest == nullptr ? bound_uniform(line, s, ratio) : bound_varied(line, s, ratio);
 }
 
 SIGHTBOUND_VECTOR

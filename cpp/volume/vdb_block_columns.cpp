@@ -10,7 +10,7 @@ namespace sightbound {
 
 namespace {
 
-constexpr int kLeaf = 8, kSquare = kLeaf * BlockColumns::kAcross;
+constexpr int kLeaf = BlockColumns::kLayers, kSquare = kLeaf * BlockColumns::kAcross;
 
 // The smallest low and high of every layer of a leaf, and the largest.
 struct LeafLayers {
@@ -126,6 +126,7 @@ void BlockColumns::lay_out() {
   }
   for (Grid<std::int32_t>* values : {&least_, &largest_})
     *values = Grid<std::int32_t>(static_cast<int>(layers), kColumns);
+  leaves_ = Grid<const std::int32_t*>(static_cast<int>(layers) / kLayers, kColumns);
 }
 
 // One row of squares.
@@ -138,6 +139,8 @@ void BlockColumns::fill_row(const RatioTree& tree, int row) {
                 j = (first_j32_ + row) * kSquare + slot / kAcross * kLeaf;
       for (int k = square.first; k < square.end(); k += kLeaf) {
         const RatioLeaf* leaf = access.probeConstLeaf({i, j, k});
+        const int row_of_leaf = (static_cast<int>(square.offset) + k - square.first) / kLayers;
+        leaves_.at(row_of_leaf, slot) = leaf != nullptr ? leaf->buffer().data() : nullptr;
         const LeafLayers layers = leaf != nullptr ? layers_of(*leaf) : layers_of(access.getValue({i, j, k}));
         for (std::size_t n = 0; n < kLeaf; ++n) {
           const int at = static_cast<int>(square.offset) + k - square.first + static_cast<int>(n);

@@ -3,8 +3,10 @@
 // need not be read. Private to cpp/volume.
 //
 // Columns are kept in squares of 4 x 4. The 16 numbers of a square's layer lie side by side: what a line that
-// is not steep passes within the square is one or two lines of the cache. Memory: 12 bytes a square, 128 a
-// layer between its lowest and its highest leaf (a leaf has 2 KiB). Cost: one pass over the leaves.
+// is not steep passes within the square is one or two lines of the cache. So do the leaves' places: the way
+// down the tree would be three waits for memory each. Memory: 12 bytes a square, 144 a layer between its
+// lowest and its highest leaf (a leaf has 2 KiB). Cost: one pass over the leaves. The tree must stay as it
+// is.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +24,10 @@ class BlockColumns {
   static constexpr int kAcross = 4;                   // columns of 8 in a square
   static constexpr int kColumns = kAcross * kAcross;  // of a square
   static constexpr int kSquares = 4;                  // across a column of 128
+  static constexpr int kLayers = 8;                   // of a leaf
+
+  static constexpr int kEmpty = std::numeric_limits<int>::min() / 2;      // nothing but background
+  static constexpr int kIrregular = std::numeric_limits<int>::max() / 2;  // always ask the tree
 
   struct Square {
     int first = kEmpty;  // lowest layer told of, in voxels; below it the tree must be asked
@@ -29,10 +35,9 @@ class BlockColumns {
     std::uint32_t offset = 0;
     int end() const { return first + layers; }
     bool is_told(int from) const { return from >= first; }
+    bool tells(int layer) const { return layer >= first && layer < end(); }  // and there are leaves
+    bool is_irregular() const { return first == kIrregular; }
   };
-  static constexpr int kEmpty = std::numeric_limits<int>::min() / 2;      // nothing but background
-  static constexpr int kIrregular = std::numeric_limits<int>::max() / 2;  // always ask the tree
-
   BlockColumns(const RatioTree&, const Workers&);
 
   // Square (i32, j32) of 32 x 32 voxels.
@@ -49,10 +54,19 @@ class BlockColumns {
   const std::int32_t* least(const Square& square, int layer) const { return of(least_, square, layer); }
   // pack(largest low, largest high).
   const std::int32_t* largest(const Square& square, int layer) const { return of(largest_, square, layer); }
+  // The values of the leaf that holds a layer that is told of, in the tree's order, for each column of the
+  // square; null = a tile, of which least() is the value.
+  const std::int32_t* const* leaf(const Square& square, int layer) const {
+    return leaves_.row((static_cast<int>(square.offset) + layer - square.first) / kLayers);
+  }
   // To be read soon.
   void prefetch(const Square& square, int layer) const {
 #if defined(__GNUC__)
-    if (layer >= square.first && layer < square.end()) __builtin_prefetch(least(square, layer));
+    if (layer >= square.first && layer < square.end()) {
+      __builtin_prefetch(least(square, layer));
+      __builtin_prefetch(leaf(square, layer));
+      __builtin_prefetch(leaf(square, layer) + kColumns / 2);
+    }
 #endif
   }
   // Above this layer there is nothing but background in the column of 128 x 128.
@@ -76,6 +90,7 @@ class BlockColumns {
   Square beyond_;  // of all columns without nodes
   std::vector<Square> squares_;
   Grid<std::int32_t> least_, largest_;  // a row each layer of each square
+  Grid<const std::int32_t*> leaves_;    // a row every eight
   std::vector<int> ends_128_;
 };
 

@@ -11,7 +11,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -211,7 +210,7 @@ class RayWalk {
       if (doubt == PlanState::kAll && !passed.unknown(t)) return false;
       const bool some_unknown = doubt == PlanState::kSome;
       if (some_unknown || may_matter(piece, columns, square, passed)) {
-        if (!voxels(piece, columns, some_unknown, passed)) return false;
+        if (!voxels(piece, columns, some_unknown, square, passed)) return false;
       } else if (!passed.voxel(background_, false, t)) {
         return false;
       }
@@ -237,15 +236,16 @@ class RayWalk {
 
   // Voxel by voxel within a column of leaves.
   template <class Passed>
-  bool voxels(const Piece& piece, const Columns<kLeaf>& leaf_column, bool some_unknown, Passed& passed) {
+  bool voxels(const Piece& piece, const Columns<kLeaf>& leaf_column, bool some_unknown,
+              const BlockColumns::Square& square, Passed& passed) {
     const int i8 = leaf_column.i() * kLeaf, j8 = leaf_column.j() * kLeaf;
+    const LeafColumn column{square, BlockColumns::slot(leaf_column.i(), leaf_column.j()), i8, j8};
     const int k8 = layer(piece.low, kLeaf), k8_end = layer(piece.high, kLeaf);
     bool any_leaf = some_unknown;
-    find_leaves(i8, j8, k8, k8_end);
-    for (int k = k8; k <= k8_end && !any_leaf; ++k) any_leaf = leaf_at(k) != nullptr || beyond_cache(k);
+    for (int k = k8; k <= k8_end && !any_leaf; ++k) any_leaf = is_leaf(column, k * kLeaf);
     if (!any_leaf) {
       for (int k = k8; k <= k8_end; ++k) {
-        if (!passed.voxel(tile_at(k), false, piece.from)) return false;
+        if (!passed.voxel(value(column, {i8, j8, k * kLeaf}), false, piece.from)) return false;
       }
       return true;
     }
@@ -265,39 +265,34 @@ class RayWalk {
       const Piece part = path_.piece(t, z, end, z_end);
       const int k_low = layer(part.low), k_high = layer(part.high);
       for (int n = k_low; n <= k_high; ++n) {
-        const int k = part.falls ? k_low + k_high - n : n;
-        const openvdb::Coord place(columns.i(), columns.j(), k);
+        const openvdb::Coord place(columns.i(), columns.j(), part.falls ? k_low + k_high - n : n);
         const bool two_sided = has_ambiguous_ && ambiguous_.isValueOn(place);
-        if (!passed.voxel(value(i, j, k, place), two_sided, t)) return false;
+        if (!passed.voxel(value(column, place), two_sided, t)) return false;
       }
       t = end, z = z_end;
     }
     return true;
   }
 
-  std::int32_t value(int i, int j, int k, const openvdb::Coord& place) {
-    const int k8 = k >> 3;
-    if (k8 < first_layer_ || beyond_cache(k8)) return ratios_.getValue(place);
-    const RatioLeaf* leaf = leaf_at(k8);
-    return leaf != nullptr ? leaf->getValue(static_cast<openvdb::Index>(i * 64 + j * 8 + (k & 7)))
-                           : tile_at(k8);
+  struct LeafColumn {
+    const BlockColumns::Square& square;
+    int slot;    // in it
+    int i8, j8;  // its first voxel
+  };
+
+  bool is_leaf(const LeafColumn& column, int k) const {
+    if (column.square.is_irregular()) return ratios_.probeConstLeaf({column.i8, column.j8, k}) != nullptr;
+    return column.square.tells(k) && columns_.leaf(column.square, k)[column.slot] != nullptr;
   }
 
-  // The boxes of 8 above one another that a piece may meet: a few, for lines that are not steep.
-  void find_leaves(int i8, int j8, int k8, int k8_end) {
-    first_layer_ = k8;
-    for (int k = k8; k <= k8_end && k - k8 < kCached; ++k) {
-      const openvdb::Coord place(i8, j8, k * kLeaf);
-      const auto at = static_cast<std::size_t>(k - k8);
-      leaves_[at] = ratios_.probeConstLeaf(place);
-      if (leaves_[at] == nullptr) tiles_[at] = ratios_.getValue(place);
-    }
+  std::int32_t value(const LeafColumn& column, const openvdb::Coord& place) const {
+    const int k = place.z();
+    if (!column.square.tells(k)) return column.square.is_told(k) ? background_ : ratios_.getValue(place);
+    const std::int32_t* leaf = columns_.leaf(column.square, k)[column.slot];
+    if (leaf == nullptr) return columns_.least(column.square, k)[column.slot];
+    return leaf[(place.x() - column.i8) * kLeaf * kLeaf + (place.y() - column.j8) * kLeaf +
+                (k & (kLeaf - 1))];
   }
-  bool beyond_cache(int k8) const { return k8 - first_layer_ >= kCached; }
-  const RatioLeaf* leaf_at(int k8) const {
-    return beyond_cache(k8) ? nullptr : leaves_[static_cast<std::size_t>(k8 - first_layer_)];
-  }
-  std::int32_t tile_at(int k8) const { return tiles_[static_cast<std::size_t>(k8 - first_layer_)]; }
 
   // Passes the boxes of a piece when none of them has children; false when one does and nothing was passed.
   template <class Node, int side, class Passed>
@@ -317,7 +312,6 @@ class RayWalk {
     return true;
   }
 
-  static constexpr int kCached = 8;
   const PlanMask* unknown_;
   const BlockColumns& columns_;
   Path path_;
@@ -325,9 +319,6 @@ class RayWalk {
   std::int32_t background_;
   openvdb::tree::ValueAccessor<const RatioTree, false> ratios_;
   openvdb::tree::ValueAccessor<const BitTree, false> ambiguous_;
-  int first_layer_ = 0;
-  std::array<const RatioLeaf*, kCached> leaves_{};
-  std::array<std::int32_t, kCached> tiles_{};
 };
 
 }  // namespace sightbound
