@@ -11,27 +11,37 @@
 
 namespace sightbound {
 
+// Costs are 0 or more.
+inline constexpr int kCostShift = 20;  // keeps sign, exponent and 3 bits of a float
+inline constexpr std::size_t kCostClasses = std::size_t{1} << (31 - kCostShift);
+
 template <class T>
 class BucketQueue {
  public:
-  // Costs are 0 or more. Of one bucket the last in is the first out.
+  // Of one bucket the last in is the first out.
   void push(float cost, const T& item) {
-    const std::size_t n = std::bit_cast<std::uint32_t>(cost) >> kShift;
+    const std::size_t n = std::bit_cast<std::uint32_t>(cost) >> kCostShift;
     buckets_[n].push_back(item);
     lowest_ = std::min(lowest_, n);
   }
-  // False when there is none left.
-  bool pop(T& item) {
-    while (lowest_ < buckets_.size() && buckets_[lowest_].empty()) ++lowest_;
-    if (lowest_ == buckets_.size()) return false;
+  // False when there is none left in the first `classes` buckets.
+  bool pop(T& item, std::size_t classes = kCostClasses) {
+    while (lowest_ < classes && buckets_[lowest_].empty()) ++lowest_;
+    if (lowest_ >= classes) return false;
     item = buckets_[lowest_].back();
     buckets_[lowest_].pop_back();
     return true;
   }
+  std::size_t size(std::size_t cost_class) const { return buckets_[cost_class].size(); }
+  template <class F>
+  void for_each(const F& f) const {
+    for (std::size_t n = lowest_; n < buckets_.size(); ++n) {
+      for (const T& item : buckets_[n]) f(item);
+    }
+  }
 
  private:
-  static constexpr int kShift = 20;  // keeps sign, exponent and 3 bits of a float
-  std::array<std::vector<T>, (std::size_t{1} << (31 - kShift))> buckets_;
+  std::array<std::vector<T>, kCostClasses> buckets_;
   std::size_t lowest_ = 0;
 };
 

@@ -6,32 +6,60 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "simplify/block_joiner.h"
+#include "simplify/bucket_queue.h"
 #include "simplify/envelope.h"
+#include "simplify/originals.h"
 #include "simplify/plan_mesh.h"
 #include "simplify/quadric.h"
 
 namespace sightbound {
 
 struct PassPlan {
-  int tile = 128;                // cells a side
-  int shift_x = 0, shift_y = 0;  // of the tiles, cells
-  bool relax = false;            // move vertices to where they have most room before anything else
-  // That a tile may lose, give or take 1.
-  std::size_t most_faces = std::numeric_limits<std::size_t>::max();
-  double share = 0;  // of `progress`
+  int tile = 256;                           // cells a side
+  int shift_x = 0, shift_y = 0;             // of the tiles, cells
+  bool relax = false;                       // move vertices to where they have most room before anything else
+  std::size_t cost_classes = kCostClasses;  // collapses that cost more are left to other passes
+  double share = 0;                         // of `progress`
 };
+
+inline constexpr std::size_t kAllFaces = std::numeric_limits<std::size_t>::max();
 
 class Decimation {
  public:
-  Decimation(PlanMesh& mesh, const Envelope& envelope);
+  Decimation() = default;
+  explicit Decimation(PlanMesh mesh);
 
-  // Returns how many faces went. Advances `progress` by the plan's share.
-  std::size_t pass(const PassPlan& plan, const Workers& workers, Progress& progress);
+  const PlanMesh& mesh() const { return mesh_; }
+  PlanMesh& mesh() { return mesh_; }
+  PlanMesh release() && { return std::move(mesh_); }  // and the rest with it
+
+  // The whole mesh as one tile, which may lose so many faces.
+  void pass(const PassPlan& plan, const Envelope& envelope, std::size_t most_faces, Progress& progress);
+  // Tile by tile. Returns how many faces went. Advances `progress` by the plan's share.
+  std::size_t pass(const PassPlan& plan, Originals& originals, const Workers& workers, Progress& progress);
+  // The same of the cheapest edges: no more faces go than `faces`, give or take 1, half as many if there are
+  // many. Each tile has a part of them by the number of its cheap edges.
+  std::size_t pass_losing(std::size_t faces, PassPlan plan, Originals& originals, const Workers& workers,
+                          Progress& progress);
+
+  // Gives back the memory of what went.
+  void compact();
+  std::size_t bytes() const;
+  // Makes room, this being so much of what there will be.
+  void expect_of_all(double part);
+
+  // What the passes over blocks have left, joined along their rims. All blocks have had as many.
+  void add(Decimation block, const Window& window, BlockJoiner& joiner);
+  void finish(BlockJoiner& joiner);
 
  private:
   friend class TileDecimation;
@@ -44,12 +72,21 @@ class Decimation {
     std::uint16_t changed = 0;
     bool frozen = false;  // in this pass
   };
+  struct Tiles {
+    int across = 0, down = 0;
+  };
 
-  void assign_tiles(const PassPlan& plan);
+  Tiles begin_pass(const PassPlan& plan, const Originals& originals);
+  Tiles assign_tiles(const PassPlan& plan, const Originals& originals);
   void freeze_seams();
+  void leave_to_next_pass(std::size_t tile);
+  std::span<const std::int32_t> vertices_of(std::size_t tile) const;
+  // f(tile, envelope) for all tiles that are wanted, in parallel.
+  void for_each_tile(const PassPlan& plan, const Tiles& tiles, Originals& originals, const Workers& workers,
+                     Progress& progress, const std::function<bool(std::size_t)>& wanted,
+                     const std::function<void(std::size_t, const Envelope&)>& f);
 
-  PlanMesh& mesh_;
-  const Envelope& envelope_;
+  PlanMesh mesh_;
   std::vector<State> states_;
   std::vector<Quadric> quadrics_;  // of vertices
   std::uint16_t pass_ = 0;

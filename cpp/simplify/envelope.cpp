@@ -12,18 +12,27 @@ namespace sightbound {
 Envelope::Envelope(const Original& original) : original_(original), margin_(2 * original.rounding()) {}
 
 HeightInterval Envelope::heights_for(const EdgeStar& star, const Point& p, double most) const {
-  return original_.varying() ? find<true>(star, p, most) : find<false>(star, p, most);
+  const int end = star.sides();
+  return original_.varying() ? find<true>(star, p, 0, end, most) : find<false>(star, p, 0, end, most);
+}
+
+HeightInterval Envelope::heights_at_a(const EdgeStar& star, double most) const {
+  const Point& a = star.place_a;
+  return original_.varying() ? find<true>(star, a, star.b_begin, star.b_end, most)
+                             : find<false>(star, a, star.b_begin, star.b_end, most);
 }
 
 template <bool kVarying>
-HeightInterval Envelope::find(const EdgeStar& star, const Point& p, double most) const {
+HeightInterval Envelope::find(const EdgeStar& star, const Point& p, int begin, int end, double most) const {
   const Original::Local here = original_.under<kVarying>(p);
   HeightInterval z{here.height - here.tolerance + margin_, here.height + here.tolerance - margin_};
-  for (int i = 0; i < star.sides() && z.missing() <= most; ++i) {
+  for (int i = begin; i < end && z.missing() <= most; ++i) {
     const auto n = static_cast<std::size_t>(i);
     narrow_inside<kVarying>(star.at[n], star.at[n + 1], p, most, z);
   }
-  for (int i = 0; i < star.size && z.missing() <= most; ++i) {
+  // A closed ring's last place is its first.
+  const int last = star.closed && end - begin == star.size ? end - 1 : end;
+  for (int i = begin; i <= last && z.missing() <= most; ++i) {
     narrow_along<kVarying>(star.at[static_cast<std::size_t>(i)], p, z);
   }
   return z;
@@ -49,6 +58,7 @@ void Envelope::narrow_inside(const Point& a, const Point& b, const Point& p, dou
   const double area = area2(a, b, p), per_area = 1 / area, rise = (b.z - a.z) * per_area;
   const double ex = a.y - b.y, ey = b.x - a.x, fx = p.y - a.y, fy = a.x - p.x;
   double low = (z.low - a.z) * per_area, high = (z.high - a.z) * per_area;  // per unit of e
+  const int first_col = original_.first_col();
   bool all_seen = true;
   Original::for_samples(a, b, p, [&](int row, int begin, int end) {
     const float* height = original_.heights(row);
@@ -57,8 +67,9 @@ void Envelope::narrow_inside(const Point& a, const Point& b, const Point& p, dou
     for (int x = begin; x < end; ++x) {
       const double e = e_row + ex * (x - a.x), f = f_row + fx * (x - a.x);
       if (e <= 0) continue;
-      const double d = height[x] - a.z - rise * f;
-      const double allowed = (kVarying ? tolerance[x] : original_.constant()) - margin_;
+      const int n = x - first_col;
+      const double d = height[n] - a.z - rise * f;
+      const double allowed = (kVarying ? tolerance[n] : original_.constant()) - margin_;
       if (d - allowed > e * low) low = (d - allowed) / e;
       if (d + allowed < e * high) high = (d + allowed) / e;
     }

@@ -29,12 +29,16 @@ class Envelope {
   // star's ring lie in the envelope; the ring's own edges are taken to lie in it already. Stops when more
   // than `most` is missing, with what it has found by then. O(samples covered).
   HeightInterval heights_for(const EdgeStar& star, const Point& p, double most) const;
+  // The same where vertex a stays what it is: only the triangles that were at b are new. Those at a may reach
+  // beyond the window.
+  HeightInterval heights_at_a(const EdgeStar& star, double most) const;
 
   double tolerance_near(const Point& p) const { return original_.tolerance_near(p); }
 
  private:
+  // Of the ring's sides from `begin` to `end`.
   template <bool kVarying>
-  HeightInterval find(const EdgeStar& star, const Point& p, double most) const;
+  HeightInterval find(const EdgeStar& star, const Point& p, int begin, int end, double most) const;
   template <bool kVarying>
   void narrow_along(const Point& v, const Point& p, HeightInterval& z) const;
   template <bool kVarying>

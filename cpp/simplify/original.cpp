@@ -5,7 +5,7 @@ namespace sightbound {
 
 namespace {
 
-// Places where lines cross are rounded to some 2^-36 of a cell (columns below 2^16), those of vertices as
+// Places where lines cross are rounded to some 2^-32 of a cell (columns below 2^20), those of vertices as
 // written in a CRS to 2^-28 (coordinates below 2^24 cells from the CRS's origin).
 constexpr double kPlaceRounding = 0x1p-26;  // cells
 // A height is the sum of a dozen products, each rounded to 2^-53 of it.
@@ -13,8 +13,9 @@ constexpr double kHeightRounding = 0x1p-48;
 
 }  // namespace
 
-Original::Original(const Grid<float>& heights, const Grid<float>& tolerance, double constant)
-    : heights_(heights), tolerance_(tolerance), constant_(constant) {
+Original::Original(const Grid<float>& heights, const Grid<float>& tolerance, double constant,
+                   const Window& window)
+    : heights_(heights), tolerance_(tolerance), constant_(constant), window_(window) {
   double highest = 0, steepest = 0, loosest = constant;
   const auto rise = [&](double z, double beside) {
     if (!std::isnan(beside)) steepest = std::max(steepest, std::abs(z - beside));

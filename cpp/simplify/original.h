@@ -21,23 +21,26 @@ class Original {
     double height, tolerance;
   };
 
-  // `tolerance` of each sample, or empty for the constant. Both grids must outlive this.
-  Original(const Grid<float>& heights, const Grid<float>& tolerance, double constant);
+  // Of a window of the DEM, for places in it: `tolerance` of each sample, or empty for the constant. The
+  // grids are the window's and must outlive this.
+  Original(const Grid<float>& heights, const Grid<float>& tolerance, double constant, const Window& window);
 
   bool varying() const { return !tolerance_.empty(); }
   double constant() const { return constant_; }
-  const float* heights(int row) const { return heights_.row(row); }
-  const float* tolerances(int row) const { return tolerance_.row(row); }
+  // Of a row, from first_col() on.
+  const float* heights(int row) const { return heights_.row(row - window_.row); }
+  const float* tolerances(int row) const { return tolerance_.row(row - window_.row); }
+  int first_col() const { return window_.col; }
   // What rounding may add to a deviation, places as written in a CRS included, in metres.
   double rounding() const { return rounding_; }
 
   // On the edge from one sample to another.
   template <bool kVarying>
   Local between(int r0, int c0, int r1, int c1, double part) const {
-    const double h0 = heights_.at(r0, c0), h1 = heights_.at(r1, c1);
+    const double h0 = height_at(r0, c0), h1 = height_at(r1, c1);
     Local found{h0 + part * (h1 - h0), constant_};
     if constexpr (kVarying) {
-      const double e0 = tolerance_.at(r0, c0), e1 = tolerance_.at(r1, c1);
+      const double e0 = tolerance_at(r0, c0), e1 = tolerance_at(r1, c1);
       found.tolerance = e0 + part * (e1 - e0);
     }
     return found;
@@ -46,7 +49,7 @@ class Original {
   double tolerance_near(const Point& p) const {
     constexpr double kLeast = 1e-9;
     const double here =
-        varying() ? tolerance_.at(static_cast<int>(p.y + 0.5), static_cast<int>(p.x + 0.5)) : constant_;
+        varying() ? tolerance_at(static_cast<int>(p.y + 0.5), static_cast<int>(p.x + 0.5)) : constant_;
     return here > kLeast ? here : kLeast;
   }
   // Anywhere in the footprint: samples that do not matter may be nodata.
@@ -74,9 +77,13 @@ class Original {
   }
   static int whole_above(double x) { return static_cast<int>(x) + 1; }
 
+  double height_at(int row, int col) const { return heights_.at(row - window_.row, col - window_.col); }
+  double tolerance_at(int row, int col) const { return tolerance_.at(row - window_.row, col - window_.col); }
+
   const Grid<float>& heights_;
   const Grid<float>& tolerance_;
   double constant_, rounding_;
+  Window window_;
 };
 
 template <bool kVarying>
@@ -100,13 +107,15 @@ Original::Local Original::under(const Point& p) const {
 template <bool kVarying, class F>
 void Original::for_crossings(const Point& a, const Point& b, const F& f) const {
   const double dx = b.x - a.x, dy = b.y - a.y;
-  const int last_row = heights_.rows() - 2, last_col = heights_.cols() - 2;
+  // Rounding must not lead out of the window.
+  const int first_row = window_.row, last_row = window_.row_end() - 2;
+  const int first_col = window_.col, last_col = window_.col_end() - 2;
   if (dx != 0) {
     const double step = 1 / dx;
     const double end = std::max(a.x, b.x);
     for (int c = whole_above(std::min(a.x, b.x)); c < end; ++c) {
       const double t = (c - a.x) * step, y = a.y + t * dy;
-      const int r = std::min(static_cast<int>(y), last_row);
+      const int r = std::clamp(static_cast<int>(y), first_row, last_row);
       f(between<kVarying>(r, c, r + 1, c, y - r), t);
     }
   }
@@ -115,7 +124,7 @@ void Original::for_crossings(const Point& a, const Point& b, const F& f) const {
     const double end = std::max(a.y, b.y);
     for (int r = whole_above(std::min(a.y, b.y)); r < end; ++r) {
       const double t = (r - a.y) * step, x = a.x + t * dx;
-      const int c = std::min(static_cast<int>(x), last_col);
+      const int c = std::clamp(static_cast<int>(x), first_col, last_col);
       f(between<kVarying>(r, c, r, c + 1, x - c), t);
     }
   }
@@ -125,7 +134,8 @@ void Original::for_crossings(const Point& a, const Point& b, const F& f) const {
     const double end = std::max(before, after);
     for (int down = static_cast<int>(std::floor(std::min(before, after))) + 1; down < end; ++down) {
       const double t = (down - before) * step, x = a.x + t * dx;
-      const int c = std::clamp(static_cast<int>(x), std::max(0, -down), std::min(last_col, last_row - down));
+      const int c = std::clamp(static_cast<int>(x), std::max(first_col, first_row - down),
+                               std::min(last_col, last_row - down));
       f(between<kVarying>(c + down, c, c + down + 1, c + 1, x - c), t);
     }
   }

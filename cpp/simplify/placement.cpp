@@ -103,7 +103,8 @@ Point centre_of(const EdgeStar& star) {
 std::optional<Point> place_at_a(const Envelope& envelope, const EdgeStar& star, Freedom freedom) {
   const Point& a = star.place_a;
   if (!well_shaped(star, a)) return {};
-  const HeightInterval heights = envelope.heights_for(star, a, 0);
+  const HeightInterval heights =
+      freedom == Freedom::kHeight ? envelope.heights_for(star, a, 0) : envelope.heights_at_a(star, 0);
   if (heights.missing() > 0) return {};
   if (freedom == Freedom::kHeight) return Point{a.x, a.y, 0.5 * (heights.low + heights.high)};
   return a.z >= heights.low && a.z <= heights.high ? std::optional(a) : std::nullopt;

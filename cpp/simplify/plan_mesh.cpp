@@ -5,16 +5,19 @@
 
 namespace sightbound {
 
-PlanMesh::PlanMesh(const Grid<float>& heights) {
-  const int rows = heights.rows(), cols = heights.cols();
-  const auto there = [&](int r, int c) { return !std::isnan(heights.at(r, c)); };
-  std::vector<std::int32_t> number(heights.size(), kNone);
+PlanMesh::PlanMesh(const Grid<float>& heights, const Window& held, const Window& window) {
+  const int rows = window.rows, cols = window.cols;
+  const auto height = [&](int r, int c) {
+    return heights.at(window.row - held.row + r, window.col - held.col + c);
+  };
+  const auto there = [&](int r, int c) { return !std::isnan(height(r, c)); };
+  std::vector<std::int32_t> number(window.cells(), kNone);
   const auto vertex_at = [&](int r, int c) {
     std::int32_t& n =
         number[static_cast<std::size_t>(r) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(c)];
     if (n == kNone) {
       n = static_cast<std::int32_t>(vertices_.size());
-      vertices_.push_back({heights.at(r, c), c * kStepsPerCell, r * kStepsPerCell});
+      vertices_.push_back({height(r, c), (window.col + c) * kStepsPerCell, (window.row + r) * kStepsPerCell});
     }
     return n;
   };
@@ -45,7 +48,7 @@ PlanMesh::PlanMesh(const Grid<float>& heights) {
       over = lower;
     }
   }
-  find_kinds();
+  for (std::int32_t v = 0; at(v) < vertices_.size(); ++v) set_kind(v, kind_by_outline(v));
   split_touching();
 }
 
@@ -55,8 +58,34 @@ std::size_t PlanMesh::count_faces() const {
   return count;
 }
 
-std::int32_t PlanMesh::twin_of(std::int32_t vertex) const {
-  return vertex < first_twin_ ? vertex : twins_[at(vertex - first_twin_)];
+std::vector<std::int32_t> PlanMesh::compact() {
+  std::vector<std::int32_t> old, number(vertices_.size(), kNone);
+  for (std::int32_t v = 0; at(v) < vertices_.size(); ++v) {
+    if (corner_of(v) == kNone) continue;
+    number[at(v)] = static_cast<std::int32_t>(old.size());
+    vertices_[old.size()] = vertices_[at(v)];
+    old.push_back(v);
+  }
+  vertices_.resize(old.size());
+  vertices_.shrink_to_fit();
+  std::vector<std::int32_t> triangle(triangles(), kNone);
+  std::int32_t left = 0;
+  for (std::int32_t t = 0; at(t) < triangles(); ++t) {
+    if (alive(t)) triangle[at(t)] = left++;
+  }
+  const auto moved = [&](std::int32_t corner) {
+    return corner == kNone ? kNone : 4 * triangle[at(corner / 4)] + corner % 4;
+  };
+  for (std::int32_t c = 0; at(c) < corners_.size(); ++c) {
+    if (triangle[at(c / 4)] == kNone) continue;
+    const Corner corner = corners_[at(c)];
+    const std::int32_t v = corner.vertex == kNone ? kNone : number[at(corner.vertex)];
+    corners_[at(moved(c))] = {v, moved(corner.opposite)};
+  }
+  corners_.resize(4 * at(left));
+  corners_.shrink_to_fit();
+  for (Vertex& v : vertices_) v.corner = moved(v.corner);
+  return old;
 }
 
 std::int32_t PlanMesh::first_corner(std::int32_t vertex) const {
@@ -117,21 +146,20 @@ void PlanMesh::join(std::int32_t a, std::int32_t b) {
 }
 
 // One that ends a straight piece of the outline is a corner.
-void PlanMesh::find_kinds() {
-  for (std::int32_t v = 0; at(v) < vertices_.size(); ++v) {
-    const std::int32_t first = first_corner(v);
-    if (!on_outline(first)) continue;
-    std::int32_t last = first;
-    for (std::int32_t c = first; c != kNone; c = counterclockwise(c)) last = c;
-    const std::int32_t a = vertex(next(first)), b = vertex(previous(last));
-    const Point p = place(v), p_a = place(a), p_b = place(b);
-    const bool ahead = (p_a.x - p.x) * (p_b.x - p.x) + (p_a.y - p.y) * (p_b.y - p.y) < 0;
-    set_kind(v, ahead && area2(p, p_a, p_b) == 0 ? VertexKind::kOutline : VertexKind::kCorner);
-  }
+VertexKind PlanMesh::kind_by_outline(std::int32_t v) const {
+  const std::int32_t first = first_corner(v);
+  if (!on_outline(first)) return VertexKind::kInside;
+  std::int32_t last = first;
+  for (std::int32_t c = first; c != kNone; c = counterclockwise(c)) last = c;
+  const std::int32_t a = vertex(next(first)), b = vertex(previous(last));
+  const Point p = place(v), p_a = place(a), p_b = place(b);
+  const bool ahead = (p_a.x - p.x) * (p_b.x - p.x) + (p_a.y - p.y) * (p_b.y - p.y) < 0;
+  return ahead && area2(p, p_a, p_b) == 0 ? VertexKind::kOutline : VertexKind::kCorner;
 }
 
 // A sample of several fans of triangles becomes a vertex of each, and none of them moves.
-void PlanMesh::split_touching() {
+std::vector<std::int32_t> PlanMesh::split_touching() {
+  std::vector<std::int32_t> twins;
   std::vector<std::uint8_t> corners(vertices_.size(), 0);
   for (const Corner& corner : corners_) {
     if (corner.vertex != kNone) ++corners[at(corner.vertex)];
@@ -146,7 +174,6 @@ void PlanMesh::split_touching() {
     } while (c != kNone && c != first);
   };
   const std::size_t samples = vertices_.size();
-  first_twin_ = static_cast<std::int32_t>(samples);
   for (std::size_t v = 0; v < samples; ++v) {
     for_fan(static_cast<std::int32_t>(v), [&](std::int32_t) { --corners[v]; });
   }
@@ -156,13 +183,14 @@ void PlanMesh::split_touching() {
     bool of_first_fan = false;
     for_fan(v, [&](std::int32_t k) { of_first_fan |= k == static_cast<std::int32_t>(c); });
     if (of_first_fan) continue;
-    const auto twin = static_cast<std::int32_t>(samples + twins_.size());
-    twins_.push_back(v);
+    const auto twin = static_cast<std::int32_t>(vertices_.size());
+    twins.push_back(v);
     set_kind(v, VertexKind::kFixed);
     vertices_.push_back(vertices_[at(v)]);
     vertices_.back().corner = static_cast<std::int32_t>(c);
     for_fan(twin, [&](std::int32_t k) { corners_[at(k)].vertex = twin; });
   }
+  return twins;
 }
 
 }  // namespace sightbound

@@ -2,8 +2,7 @@
 // A triangle mesh over the raster's plane that shrinks in place.
 //
 // Places in plan are columns and rows in steps of 1/1024, whole numbers: differences and cross products of
-// doubles made of them are exact on rasters up to 65,536 cells a side, so that no orientation is ever in
-// doubt.
+// doubles made of them are exact on rasters up to 2^20 cells a side, so that no orientation is ever in doubt.
 //
 // A corner table: triangle t has the corners 4 t, 4 t + 1, 4 t + 2, counterclockwise where columns run right
 // and rows run up. opposite(c) is the corner across the edge that lies opposite to c.
@@ -18,7 +17,7 @@
 namespace sightbound {
 
 inline constexpr int kStepsPerCell = 1024;
-inline constexpr int kMostCells = 65536;  // a side
+inline constexpr int kMostCells = 1 << 20;  // a side
 
 // What may become of a vertex; each may do what those after it may.
 enum class VertexKind : std::uint8_t {
@@ -26,6 +25,7 @@ enum class VertexKind : std::uint8_t {
   kOutline,  // move along the straight outline, or leave it
   kCorner,   // take another height
   kFixed,    // nothing
+  kRim,      // nothing, until its block is joined to the next
 };
 
 struct Point {
@@ -38,12 +38,25 @@ inline double area2(const Point& a, const Point& b, const Point& c) {
   return cross(b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y);
 }
 
+// For values of which so much of all is there: vectors that grow by copying would take half as much again.
+// Room that is not used takes no memory.
+template <class T>
+void make_room(std::vector<T>& values, double part) {
+  constexpr double kSpare = 1.25;
+  const double all = static_cast<double>(values.size()) / part;
+  if (all > static_cast<double>(values.capacity())) values.reserve(static_cast<std::size_t>(kSpare * all));
+}
+
 class PlanMesh {
  public:
   static constexpr std::int32_t kNone = -1;
+  static constexpr std::size_t kMostTriangles =
+      (std::size_t{1} << 29) - 1;  // corners are numbered in 31 bits
 
-  // The regular TIN of a DEM. Where parts touch in one sample only, it becomes a vertex of each.
-  explicit PlanMesh(const Grid<float>& heights);
+  PlanMesh() = default;
+  // The regular TIN of a window of a DEM; `heights` are those of a window that holds it. Where parts touch in
+  // one sample only, it becomes a vertex of each, and none of them moves.
+  PlanMesh(const Grid<float>& heights, const Window& held, const Window& window);
 
   std::size_t vertices() const { return vertices_.size(); }  // removed ones included
   std::size_t triangles() const { return corners_.size() / 4; }
@@ -75,9 +88,6 @@ class PlanMesh {
     return corner != kNone ? corner : corner_towards(b, a);
   }
 
-  // The vertex at the very same place that a touching part has of it; itself as a rule.
-  std::int32_t twin_of(std::int32_t vertex) const;
-
   std::int32_t step_x(std::int32_t vertex) const { return vertices_[at(vertex)].x; }
   std::int32_t step_y(std::int32_t vertex) const { return vertices_[at(vertex)].y; }
   Point place(std::int32_t vertex) const {
@@ -95,10 +105,20 @@ class PlanMesh {
     v.y = static_cast<std::int32_t>(to.y * kStepsPerCell);
     v.z = to.z;
   }
+  // Makes room, this being so much of what there will be.
+  void expect_of_all(double part) {
+    make_room(vertices_, part);
+    make_room(corners_, part);
+  }
+  std::size_t bytes() const { return vertices_.size() * sizeof(Vertex) + corners_.size() * sizeof(Corner); }
+  // Forgets what was removed, in the same order. Returns the old numbers of the vertices.
+  std::vector<std::int32_t> compact();
   // Draws the edge from a corner's vertex to its next's together: `kept` is one of the two, the other goes.
   void collapse(std::int32_t corner, std::int32_t kept);
 
  private:
+  friend class BlockJoiner;
+
   struct Corner {
     std::int32_t vertex = kNone, opposite = kNone;
   };
@@ -112,14 +132,13 @@ class PlanMesh {
   static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
   void join(std::int32_t a, std::int32_t b);
   void remove_triangle(std::int32_t apex);
-  void split_touching();
-  void find_kinds();
+  // Returns whose twins the vertices are that it appends.
+  std::vector<std::int32_t> split_touching();
+  VertexKind kind_by_outline(std::int32_t vertex) const;
   bool on_outline(std::int32_t first_corner) const { return opposite(previous(first_corner)) == kNone; }
 
   std::vector<Corner> corners_;
   std::vector<Vertex> vertices_;
-  std::int32_t first_twin_ = 0;      // vertices from here on are
-  std::vector<std::int32_t> twins_;  // those of these
 };
 
 }  // namespace sightbound

@@ -25,6 +25,12 @@ void Quadric::add_triangle(const Point& a, const Point& b, const Point& c, const
   add(x, -wd * nx), add(y, -wd * ny), add(z, -d), add(one, wd * d);
 }
 
+Quadric& Quadric::operator+=(const Quadric& q) {
+  xx += q.xx, xy += q.xy, xz += q.xz, yy += q.yy, yz += q.yz, zz += q.zz;
+  x += q.x, y += q.y, z += q.z, one += q.one;
+  return *this;
+}
+
 QuadricSum::QuadricSum(const Quadric& q, const Point& q_place, const Quadric& r, const Point& r_place)
     : middle_{(q_place.x + r_place.x) / 2, (q_place.y + r_place.y) / 2, (q_place.z + r_place.z) / 2} {
   add(q, q_place);

@@ -14,6 +14,8 @@ struct Quadric {
 
   // The plane through a, b, c, seen from `here`.
   void add_triangle(const Point& a, const Point& b, const Point& c, const Point& here);
+  // Of the same place.
+  Quadric& operator+=(const Quadric& other);
 };
 
 // The sum of those of two vertices.

@@ -14,17 +14,25 @@
 #include <string>
 
 #include "base/progress.h"
+#include "simplify/dem_windows.h"
 #include "terrain/geotransform.h"
 #include "terrain/grid.h"
 #include "terrain/tin.h"
 
 namespace sightbound {
 
+// Where a DEM lies.
+struct DemPlace {
+  Geotransform geotransform;   // of its rows in the core's order (dem.h)
+  double metres_per_unit = 1;  // of the CRS in plan: the CRS must be projected
+  std::string crs_wkt;
+};
+
 // A DEM in memory, or a window of one (dem.h): heights in the core's row order.
 struct DemTerrain {
   const Grid<float>& heights;  // metres, NaN = nodata
   Geotransform geotransform;   // of the same window
-  double metres_per_unit = 1;  // of the CRS in plan: the CRS must be projected
+  double metres_per_unit = 1;
   std::string crs_wkt;
 };
 
@@ -41,6 +49,11 @@ struct SimplifyOptions {
   double least_gain = 0.01;
   std::size_t memory_bytes = 0;  // budget; 0 = three quarters of the memory usable
   int threads = 0;               // 0 = all
+  // Cells a side of what is worked on at once: larger ones hold more memory, smaller ones have more seams to
+  // come back to. And the samples that are read at once, a row of blocks at least. The result depends on
+  // both.
+  int block = 256;
+  std::int64_t samples_at_once = 1 << 23;
 };
 
 struct SimplifyReport {
@@ -57,10 +70,15 @@ struct SimplifiedTin {
   SimplifyReport report;
 };
 
-// Throws InvalidInput (a tolerance that is negative or not finite, an infinite height, fewer than 2 x 2
-// samples, no triangle, sizes that do not agree, 2^28 samples or more, more than 65,536 a side), OverBudget,
-// Cancelled. 170 bytes a sample; on rough ground 16 microseconds of processor each for a tolerance of 5 m, 60
-// for 1 m (docs/performance.md). Advances `progress` by 1 in all.
+// Reads the DEM as it goes along, some eight times, and holds what is left of it: 80 bytes a face of the
+// result and 10 MiB a thread, as a rule; `options` say nothing of tolerance and keep, the windows do. Throws
+// InvalidInput (a tolerance that is negative or not finite, an infinite height, fewer than 2 x 2 samples, no
+// triangle, sizes that do not agree, more than 2^20 samples a side), OverBudget, Cancelled. On rough ground
+// 16 microseconds of processor a sample for a tolerance of 5 m, 60 for 1 m (docs/performance.md). Advances
+// `progress` by 1 in all.
+SimplifiedTin simplify_dem(DemWindows&, const DemPlace&, const SimplifyOptions&, Progress&);
+
+// The same of a DEM in memory.
 SimplifiedTin simplify_dem(const DemTerrain&, const SimplifyOptions&, Progress&);
 
 }  // namespace sightbound

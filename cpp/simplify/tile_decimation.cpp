@@ -25,25 +25,44 @@ void for_each_edge(const PlanMesh& mesh, std::int32_t v, const F& f) {
 
 }  // namespace
 
-std::size_t TileDecimation::run(std::span<const std::int32_t> vertices, Progress& progress) {
-  if (plan_.relax) {
-    for (std::size_t n = 0; n < vertices.size(); ++n) {
-      if (n % kCheckEvery == 0) progress.check();
-      relax(vertices[n]);
-    }
+void TileDecimation::relax(std::span<const std::int32_t> vertices, Progress& progress) {
+  for (std::size_t n = 0; n < vertices.size(); ++n) {
+    if (n % kCheckEvery == 0) progress.check();
+    move_to_room(vertices[n]);
   }
+}
+
+std::size_t TileDecimation::run(std::span<const std::int32_t> vertices, std::size_t most,
+                                Progress& progress) {
   for (const std::int32_t v : vertices) push_untested_edges(v);
   Edge edge{};
-  for (std::size_t n = 0; faces_gone_ < plan_.most_faces && pop(edge); ++n) {
+  for (std::size_t n = 0; faces_gone_ + 1 < most && pop(edge); ++n) {
     if (n % kCheckEvery == 0) progress.check();
     try_collapse(corner_of(edge));
   }
+  keep_untested();
   return faces_gone_;
 }
 
-void TileDecimation::relax(std::int32_t v) {
+std::vector<std::uint32_t> TileDecimation::count_costs(std::span<const std::int32_t> vertices,
+                                                       Progress& progress) {
+  progress.check();
+  for (const std::int32_t v : vertices) push_untested_edges(v);
+  std::vector<std::uint32_t> edges;
+  for (std::size_t n = 0; n < kCostClasses; ++n) edges.push_back(static_cast<std::uint32_t>(queue_.size(n)));
+  return edges;
+}
+
+// What the queue holds still is for the next pass.
+void TileDecimation::keep_untested() {
+  queue_.for_each([&](const Edge& edge) {
+    if (up_to_date(edge)) state(edge.a).changed = state(edge.b).changed = all_.pass_;
+  });
+}
+
+void TileDecimation::move_to_room(std::int32_t v) {
   if (stays(v) || mesh_.kind(v) != VertexKind::kInside || !gather_around(mesh_, v, star_)) return;
-  const auto place = find_room(all_.envelope_, star_);
+  const auto place = find_room(envelope_, star_);
   if (!place) return;
   mesh_.move(v, *place);
   Quadric& quadric = all_.quadrics_[at(v)];
@@ -83,20 +102,22 @@ void TileDecimation::push(std::int32_t corner, std::int32_t v, std::int32_t w) {
     const double t = free == Freedom::kLine ? 0.5 : 0, x = p.x + t * (q.x - p.x), y = p.y + t * (q.y - p.y);
     return quadric.cost({x, y, quadric.best_height(x, y)});
   }();
-  const double tolerance = all_.envelope_.tolerance_near(mesh_.place(a));
+  const double tolerance = envelope_.tolerance_near(mesh_.place(a));
   queue_.push(static_cast<float>(cost / (tolerance * tolerance)),
               {v, w, corner, state(v).moves + state(w).moves});
 }
 
 // The cheapest edge that still is what it was.
 bool TileDecimation::pop(Edge& edge) {
-  while (queue_.pop(edge)) {
-    if (mesh_.corner_of(edge.a) != PlanMesh::kNone && mesh_.corner_of(edge.b) != PlanMesh::kNone &&
-        state(edge.a).moves + state(edge.b).moves == edge.moves) {
-      return true;
-    }
+  while (queue_.pop(edge, plan_.cost_classes)) {
+    if (up_to_date(edge)) return true;
   }
   return false;
+}
+
+bool TileDecimation::up_to_date(const Edge& edge) {
+  return mesh_.corner_of(edge.a) != PlanMesh::kNone && mesh_.corner_of(edge.b) != PlanMesh::kNone &&
+         state(edge.a).moves + state(edge.b).moves == edge.moves;
 }
 
 QuadricSum TileDecimation::quadrics(std::int32_t v, std::int32_t w) {
@@ -124,7 +145,7 @@ void TileDecimation::try_collapse(std::int32_t corner) {
   const bool next_stays = stays(mesh_.vertex(PlanMesh::next(corner)));
   if (!gather(mesh_, corner, next_stays, star_) || stays(star_.b)) return;
   const QuadricSum quadric = quadrics(star_.a, star_.b);
-  const auto place = find_place(all_.envelope_, star_, quadric, freedom(star_.a, star_.right < 0));
+  const auto place = find_place(envelope_, star_, quadric, freedom(star_.a, star_.right < 0));
   if (place) collapse(*place, quadric);
 }
 

@@ -15,11 +15,15 @@ namespace sightbound {
 
 class TileDecimation {
  public:
-  TileDecimation(Decimation& all, std::int32_t tile, const PassPlan& plan)
-      : all_(all), mesh_(all.mesh_), tile_(tile), plan_(plan) {}
+  TileDecimation(Decimation& all, std::int32_t tile, const PassPlan& plan, const Envelope& envelope)
+      : all_(all), mesh_(all.mesh_), envelope_(envelope), tile_(tile), plan_(plan) {}
 
-  // Returns how many faces went. `vertices` are those of the tile.
-  std::size_t run(std::span<const std::int32_t> vertices, Progress& progress);
+  // `vertices` are those of the tile.
+  void relax(std::span<const std::int32_t> vertices, Progress& progress);
+  // Returns how many faces went, not more than `most`.
+  std::size_t run(std::span<const std::int32_t> vertices, std::size_t most, Progress& progress);
+  // How many edges run() would try, by class of their costs.
+  std::vector<std::uint32_t> count_costs(std::span<const std::int32_t> vertices, Progress& progress);
 
  private:
   struct Edge {
@@ -31,14 +35,16 @@ class TileDecimation {
   static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
   Decimation::State& state(std::int32_t v) { return all_.states_[at(v)]; }
   bool in_tile(std::int32_t v) { return state(v).tile == tile_; }
-  bool stays(std::int32_t v) { return state(v).frozen || mesh_.kind(v) == VertexKind::kFixed; }
+  bool stays(std::int32_t v) { return state(v).frozen || mesh_.kind(v) >= VertexKind::kFixed; }
 
-  void relax(std::int32_t v);
+  void move_to_room(std::int32_t v);
   void has_changed(std::int32_t v);
   void push_untested_edges(std::int32_t v);
   void push_all_edges(std::int32_t v);
   void push(std::int32_t corner, std::int32_t v, std::int32_t w);
   bool pop(Edge& edge);
+  bool up_to_date(const Edge& edge);
+  void keep_untested();
   QuadricSum quadrics(std::int32_t v, std::int32_t w);
   Freedom freedom(std::int32_t a, bool outline_edge);
   std::int32_t corner_of(const Edge& edge) const;
@@ -47,6 +53,7 @@ class TileDecimation {
 
   Decimation& all_;
   PlanMesh& mesh_;
+  const Envelope& envelope_;
   const std::int32_t tile_;
   const PassPlan& plan_;
   BucketQueue<Edge> queue_;

@@ -21,7 +21,7 @@ namespace sightbound::testing {
 struct OverlayReport {
   double deviation = 0;    // the largest |TIN - DEM|, metres
   double excess = -1e300;  // the largest |TIN - DEM| - tolerance
-  double ratio = 0;        // the largest |TIN - DEM| / tolerance where that is not 0
+  double ratio = 0;        // the largest |TIN - DEM| / tolerance where that is not nearly 0
   double uncovered = 0;    // of the DEM's footprint that no triangle of the TIN covers, cells
   double outside = 0;      // of the TIN's beyond the DEM's footprint, cells
   double overlap = 0;      // covered twice, cells
@@ -33,6 +33,8 @@ struct OverlayReport {
 namespace oracle {
 
 using Real = long double;
+// Metres: beside places that count as exact, a ratio is one of roundings.
+inline constexpr Real kLeastTolerance = 1e-9L;
 struct P {
   Real x, y, z, e;
 };
@@ -131,7 +133,8 @@ OverlayReport overlay_report(const Grid<float>& heights, const Geotransform& map
             const Real off = std::abs(after.z - before.z);
             report.deviation = std::max(report.deviation, static_cast<double>(off));
             report.excess = std::max(report.excess, static_cast<double>(off - before.e));
-            if (before.e > 0) report.ratio = std::max(report.ratio, static_cast<double>(off / before.e));
+            if (before.e > kLeastTolerance)
+              report.ratio = std::max(report.ratio, static_cast<double>(off / before.e));
           }
         }
         shared += here;

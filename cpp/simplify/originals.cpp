@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/originals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "base/number_text.h"
+
+namespace sightbound {
+
+namespace {
+
+// The values of a sample: a height, a tolerance and whether it is kept; as much again while it is made.
+constexpr std::size_t kBytesOfSample = 16;
+
+void check_values(const DemWindow& read) {
+  for (const float height : read.heights.values()) {
+    if (std::isinf(height)) throw InvalidInput("A height of the DEM is infinite; make it nodata (NaN).");
+  }
+  for (std::size_t i = 0; i < read.tolerance.size(); ++i) {
+    const float tolerance = read.tolerance.values()[i];
+    if (std::isnan(read.heights.values()[i]) || (tolerance >= 0 && std::isfinite(tolerance))) continue;
+    throw InvalidInput("tolerance is " + number_text(tolerance) + "; give metres, 0 or more.");
+  }
+}
+
+}  // namespace
+
+Originals::Part::Part(DemWindow read, double tolerance_m, const Window& where)
+    : window(where), dem(std::move(read)), original(dem.heights, dem.tolerance, tolerance_m, where) {}
+
+const Originals::Part& Originals::rows_of(int first_row, int last_row, Progress& progress) {
+  Window window{0, first_row, cols(), last_row - first_row + 1};
+  if (part_ && part_->window.contains(window)) return *part_;
+  part_.reset();
+  if (static_cast<std::int64_t>(rows()) * cols() <= samples_at_once_) window = {0, 0, cols(), rows()};
+  DemWindow read = dem_.read(window, progress);
+  check_values(read);
+  part_.emplace(std::move(read), tolerance_m_, window);
+  rounding_ = std::max(rounding_, part_->original.rounding());
+  return *part_;
+}
+
+int Originals::tiles_at_once(int tile) const {
+  return static_cast<int>(std::max<std::int64_t>(samples_at_once_ / cols() / tile, 1));
+}
+
+std::size_t Originals::bytes(int tile) const {
+  const auto held = std::min<std::int64_t>(rows(), std::int64_t{tiles_at_once(tile)} * tile + 1);
+  return static_cast<std::size_t>(held * cols()) * kBytesOfSample;
+}
+
+}  // namespace sightbound

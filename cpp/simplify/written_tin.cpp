@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/written_tin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "simplify/envelope.h"
+
+namespace sightbound {
+
+namespace {
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+float rounded_up(double value) {
+  const auto near = static_cast<float>(value);
+  return near < value ? std::nextafter(near, std::numeric_limits<float>::infinity()) : near;
+}
+
+// A number for each vertex in the order of the triangles; one for all vertices at a sample where parts touch.
+std::vector<std::int32_t> number_vertices(const PlanMesh& mesh, std::vector<std::int32_t>& first_of_number) {
+  std::vector<std::int32_t> number(mesh.vertices(), PlanMesh::kNone);
+  std::unordered_map<std::int64_t, std::int32_t> fixed;
+  const auto next = [&](std::int32_t v) {
+    first_of_number.push_back(v);
+    return static_cast<std::int32_t>(first_of_number.size()) - 1;
+  };
+  for (std::int32_t t = 0; at(t) < mesh.triangles(); ++t) {
+    for (std::int32_t corner = 4 * t; corner < 4 * t + 3; ++corner) {
+      const std::int32_t v = mesh.vertex(corner);
+      if (number[at(v)] != PlanMesh::kNone) continue;
+      if (mesh.kind(v) != VertexKind::kFixed) {
+        number[at(v)] = next(v);
+        continue;
+      }
+      const std::int64_t place = (std::int64_t{mesh.step_y(v)} << 32) + mesh.step_x(v);
+      const auto [known, is_new] =
+          fixed.try_emplace(place, static_cast<std::int32_t>(first_of_number.size()));
+      number[at(v)] = is_new ? next(v) : known->second;
+    }
+  }
+  return number;
+}
+
+// The largest deviation on each triangle, band by band of the rows in which they begin. Returns that of all.
+Deviation find_deviations(const PlanMesh& mesh, Originals& originals, std::vector<float>& metres,
+                          const Workers& workers, Progress& progress) {
+  constexpr int kBandRows = 256;
+  constexpr std::size_t kTogether = 512;
+  const int band_rows = originals.tiles_at_once(kBandRows) * kBandRows;
+  struct Band {
+    std::vector<std::int32_t> triangles;
+    int last_row = 0;
+  };
+  std::vector<Band> bands(at(originals.rows() / band_rows + 1));
+  for (std::int32_t t = 0; at(t) < mesh.triangles(); ++t) {
+    const auto [top, bottom] =
+        std::minmax({mesh.step_y(mesh.vertex(4 * t)), mesh.step_y(mesh.vertex(4 * t + 1)),
+                     mesh.step_y(mesh.vertex(4 * t + 2))});
+    Band& band = bands[at(top / kStepsPerCell / band_rows)];
+    band.triangles.push_back(t);
+    band.last_row = std::max(band.last_row, (bottom - 1) / kStepsPerCell + 1);
+  }
+  Deviation largest;
+  const auto include = [](Deviation& all, const Deviation& one) {
+    all = {std::max(all.metres, one.metres), std::max(all.ratio, one.ratio)};
+  };
+  for (std::size_t b = 0; b < bands.size(); ++b) {
+    const std::vector<std::int32_t> triangles = std::move(bands[b].triangles);
+    if (triangles.empty()) continue;
+    const Originals::Part& part =
+        originals.rows_of(static_cast<int>(b) * band_rows, bands[b].last_row, progress);
+    std::vector<Deviation> largest_of((triangles.size() - 1) / kTogether + 1);
+    workers.for_each(largest_of.size(), [&](std::size_t n) {
+      progress.check();
+      const std::size_t end = std::min((n + 1) * kTogether, triangles.size());
+      for (std::size_t i = n * kTogether; i < end; ++i) {
+        const std::int32_t corner = 4 * triangles[i];
+        const Deviation off =
+            deviation_of(part.original, mesh.place(mesh.vertex(corner)), mesh.place(mesh.vertex(corner + 1)),
+                         mesh.place(mesh.vertex(corner + 2)));
+        metres[at(triangles[i])] = rounded_up(off.metres);
+        include(largest_of[n], off);
+      }
+    });
+    for (const Deviation& one : largest_of) include(largest, one);
+  }
+  return largest;
+}
+
+}  // namespace
+
+SimplifiedTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals& originals,
+                          const Workers& workers, Progress& progress) {
+  SimplifiedTin result;
+  Tin& tin = result.tin;
+  const Geotransform& map = place.geotransform;
+  tin.crs_wkt = place.crs_wkt;
+  tin.metres_per_unit = place.metres_per_unit;
+  const Xy middle = map.of_sample(originals.cols() / 2.0, originals.rows() / 2.0);
+  tin.origin = {std::round(middle.x), std::round(middle.y), 0};
+
+  std::vector<std::int32_t> vertices;
+  const std::vector<std::int32_t> number = number_vertices(mesh, vertices);
+  tin.vertices.reserve(vertices.size());
+  for (const std::int32_t v : vertices) {
+    const Point p = mesh.place(v);
+    const Xy in_crs = map.of_sample(p.x, p.y);
+    tin.vertices.push_back(tin.from_crs({in_crs.x, in_crs.y, p.z}));
+  }
+  // Counterclockwise in rows that run down is clockwise on the ground, unless the raster is mirrored.
+  const auto& g = map.coefficients();
+  const bool mirrored = g[1] * g[5] - g[2] * g[4] > 0;
+  tin.faces.reserve(mesh.triangles());
+  for (std::int32_t t = 0; at(t) < mesh.triangles(); ++t) {
+    if (t % 4096 == 0) progress.check();
+    const std::int32_t a = number[at(mesh.vertex(4 * t))], b = number[at(mesh.vertex(4 * t + 1))],
+                       c = number[at(mesh.vertex(4 * t + 2))];
+    tin.faces.push_back(mirrored ? Face{a, b, c} : Face{a, c, b});
+  }
+
+  TinAttribute deviation{"deviation", std::vector<float>(tin.faces.size())};
+  const Deviation largest = find_deviations(mesh, originals, deviation.values, workers, progress);
+  tin.face_attributes.push_back(std::move(deviation));
+  result.report.faces_after = tin.faces.size();
+  result.report.largest_deviation_m = largest.metres;
+  result.report.largest_ratio = largest.ratio;
+  return result;
+}
+
+}  // namespace sightbound

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the mesh in raster coordinates to a TIN in those of the CRS.
+#pragma once
+
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "simplify/originals.h"
+#include "simplify/plan_mesh.h"
+#include "simplify/simplify.h"
+
+namespace sightbound {
+
+// Faces up, with the largest deviation of each; fills in what the report says of them. The mesh is compact.
+SimplifiedTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals& originals,
+                          const Workers& workers, Progress& progress);
+
+}  // namespace sightbound
