@@ -37,6 +37,8 @@ void bind_options(py::module_& m) {
       .def("set_keep", &set_keep, py::arg("values").noconvert(), py::arg("flipped"))
       .def_readwrite("keep_border", &DemToTinOptions::keep_border)
       .def_readwrite("target_faces", &DemToTinOptions::target_faces)
+      .def_readwrite("target_bytes", &DemToTinOptions::target_bytes)
+      .def_readwrite("target_ending", &DemToTinOptions::target_ending)
       .def_readwrite("threads", &DemToTinOptions::threads)
       .def_readwrite("memory_budget", &DemToTinOptions::memory_budget);
 }

@@ -326,6 +326,8 @@ class DemToTinOptions:
     def set_keep(self, values: _Floats, flipped: bool) -> None: ...
     keep_border: bool
     target_faces: int
+    target_bytes: float
+    target_ending: str
     threads: int
     memory_budget: int
     def __init__(self) -> None: ...

@@ -48,6 +48,8 @@ def dem_to_tin(
     keep: npt.ArrayLike | None = None,
     keep_border: bool = False,
     target_faces: int | None = None,
+    target_bytes: float | None = None,
+    target_ending: str = "ply",
     threads: int | None = None,
     memory_budget: float | None = None,
     progress: Progress | None = None,
@@ -70,6 +72,9 @@ def dem_to_tin(
         keep_border: keep all samples of the outline and of holes, so that neighbouring tiles fit.
         target_faces: stop at that many faces (give or take one), the cheapest removed first; still within the tolerance, so that more
             may be left. None to remove all that can be.
+        target_bytes: instead: stop as soon as the file that `write` makes of the TIN takes no more bytes; a warning tells when the
+            tolerance does not let it.
+        target_ending: of that file. Sizes are exact for "ply"; those of "nc", "gpkg", "2dm" and "obj" are estimated from above.
         threads: None for all cores.
         memory_budget: bytes; None for three quarters of the memory.
         progress: called with the fraction done, at most ten times a second; False cancels.
@@ -90,6 +95,11 @@ def dem_to_tin(
         options.set_keep(_like("keep", keep, dem), core_dem(dem).flipped)
     options.keep_border = bool(keep_border)
     options.target_faces = 0 if target_faces is None else _count(target_faces)
+    if target_bytes is not None:
+        if target_faces is not None:
+            raise ValueError("target_bytes and target_faces say the same thing; give only one of them.")
+        options.target_bytes = _bytes(target_bytes)
+        options.target_ending = arguments.word("target_ending", target_ending).lower().lstrip(".")
     options.threads = arguments.threads(threads)
     options.memory_budget = arguments.memory_budget(memory_budget)
     model = error_model if tolerance is None else _as_model(tolerance, dem)
@@ -132,6 +142,13 @@ def _count(faces: Any) -> int:
     if isinstance(faces, bool) or not 1 <= faces < 2**31 or int(faces) != faces:
         raise ValueError(f"target_faces is {faces!r}; it must be a whole number of 1 or more.")
     return int(faces)
+
+
+def _bytes(target: Any) -> float:
+    bytes_ = arguments.number("target_bytes", target)
+    if not 0 < bytes_ < 2**53:
+        raise ValueError(f"target_bytes is {target!r}; it must be more than 0.")
+    return bytes_
 
 
 def _wrapped(made: core.Tin, report: dict[str, Any]) -> SimplifiedTin:

@@ -83,19 +83,29 @@ class Output {
 
 }  // namespace
 
+std::string ply_header(const Tin& tin, std::size_t vertices, std::size_t faces, bool ascii) {
+  std::string header("ply\nformat ");
+  header.append(ascii ? "ascii 1.0\n" : "binary_little_endian 1.0\n");
+  if (const std::string crs = short_crs(tin.crs_wkt); !crs.empty()) header += "comment crs: " + crs + "\n";
+  header += "comment z in metres\n";
+  header += "element vertex " + std::to_string(vertices) + "\n";
+  header += "property double x\nproperty double y\nproperty double z\n";
+  for (const NamedValues& one : vertex_values(tin, {"x", "y", "z"})) {
+    header += "property float " + one.name + "\n";
+  }
+  header += "element face " + std::to_string(faces) + "\nproperty list uchar int vertex_indices\n";
+  for (const NamedValues& one : face_values(tin, {"vertex_indices"})) {
+    header += "property float " + one.name + "\n";
+  }
+  header += "end_header\n";
+  return header;
+}
+
 void write_ply(const std::string& path, const Tin& tin, bool ascii, Progress& progress) {
   const std::vector<NamedValues> of_vertices = vertex_values(tin, {"x", "y", "z"});
   const std::vector<NamedValues> of_faces = face_values(tin, {"vertex_indices"});
   Output out(path, progress);
-  out.text(ascii ? "ply\nformat ascii 1.0\n" : "ply\nformat binary_little_endian 1.0\n");
-  if (const std::string crs = short_crs(tin.crs_wkt); !crs.empty()) out.text("comment crs: " + crs + "\n");
-  out.text("comment z in metres\n");
-  out.text("element vertex " + std::to_string(tin.vertices.size()) + "\n");
-  out.text("property double x\nproperty double y\nproperty double z\n");
-  for (const NamedValues& one : of_vertices) out.text("property float " + one.name + "\n");
-  out.text("element face " + std::to_string(tin.faces.size()) + "\nproperty list uchar int vertex_indices\n");
-  for (const NamedValues& one : of_faces) out.text("property float " + one.name + "\n");
-  out.text("end_header\n");
+  out.text(ply_header(tin, tin.vertices.size(), tin.faces.size(), ascii));
   for (std::size_t v = 0; v < tin.vertices.size(); ++v) {
     const Xyz p = tin.to_crs(tin.vertices[v]);
     for (const double c : {p.x, p.y, p.z}) ascii ? out.number(c) : out.bytes(c);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
+#include <limits>
 
 #include "base/error.h"
 #include "io/tin_writers.h"
@@ -57,6 +59,23 @@ std::vector<NamedValues> face_values(const Tin& tin, const std::vector<std::stri
   std::vector<NamedValues> values;
   for (const TinAttribute& one : tin.face_attributes) values.push_back({one.name, &one.values});
   return named(values, taken);
+}
+
+TinFileSize tin_file_size(const std::string& ending, const std::string& crs_wkt) {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();  // of vertices, of faces
+  constexpr double kNumber = 25, kIndex = 11;                              // characters, with a blank
+  if (ending == "ply") {
+    Tin tin;
+    tin.crs_wkt = crs_wkt;
+    tin.face_attributes.push_back({"deviation", {}});
+    return {static_cast<double>(ply_header(tin, kMost, kMost, false).size()), 24, 17};
+  }
+  if (ending == "nc") return {20000, 24, 16};
+  if (ending == "gpkg") return {150000, 0, 300};  // with its index: 270 measured
+  if (ending == "2dm") return {10, 4 + kIndex + 3 * kNumber, 7 + 4 * kIndex};
+  if (ending == "obj") return {1000, 3 + 3 * kNumber, 3 + 3 * kIndex};
+  throw InvalidInput("target_bytes is for a file that ends in '" + ending +
+                     "'; a TIN is written as ply, nc (UGRID), gpkg, 2dm or obj.");
 }
 
 std::vector<std::string> write_tin(const std::string& path, const Tin& tin, const TinWriteOptions& options,

@@ -12,6 +12,8 @@ namespace sightbound {
 
 // All write `path` as it is named; the caller renames. Throw IoError, Cancelled.
 void write_ply(const std::string& path, const Tin&, bool ascii, Progress&);
+// Up to the first vertex.
+std::string ply_header(const Tin&, std::size_t vertices, std::size_t faces, bool ascii);
 void write_obj(const std::string& path, const Tin&, Progress&);
 void write_2dm(const std::string& path, const Tin&, Progress&);
 void write_ugrid(const std::string& path, const Tin&, Progress&);

@@ -26,10 +26,12 @@ struct DemToTinOptions {
   std::optional<Extent> extent;  // snapped outward to the DEM's grid; empty = the whole DEM
   SharedGrid
       keep;  // on the grid of the whole DEM: samples that stay vertices at their own height where above 0
-  bool keep_border = false;       // all samples of the outline and of holes stay: neighbouring tiles fit
-  std::int64_t target_faces = 0;  // 0 = until nothing can be removed
-  int threads = 0;                // 0 = all cores
-  std::size_t memory_budget = 0;  // bytes; 0 = three quarters of the machine's memory
+  bool keep_border = false;           // all samples of the outline and of holes stay: neighbouring tiles fit
+  std::int64_t target_faces = 0;      // 0 = until nothing can be removed
+  double target_bytes = 0;            // of the file; 0 = no such target
+  std::string target_ending = "ply";  // of the file that target_bytes is for (tin_writer.h)
+  int threads = 0;                    // 0 = all cores
+  std::size_t memory_budget = 0;      // bytes; 0 = three quarters of the machine's memory
 };
 
 struct DemToTin {

@@ -43,9 +43,9 @@ void fix(PlanMesh& mesh, const Originals::Part& part, const Window& window, cons
 }
 
 std::size_t most_to_go(std::size_t faces, double least_part) {
-  if (least_part <= 0) return kAllFaces;
+  if (least_part <= 0) return kAllCollapses;
   const double stay = std::ceil(least_part * static_cast<double>(faces));
-  return faces - std::min(faces, static_cast<std::size_t>(stay));
+  return (faces - std::min(faces, static_cast<std::size_t>(stay))) / 2;
 }
 
 }  // namespace

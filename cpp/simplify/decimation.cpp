@@ -63,12 +63,12 @@ Decimation::Decimation(PlanMesh mesh)
   }
 }
 
-void Decimation::pass(const PassPlan& plan, const Envelope& envelope, std::size_t most_faces,
+void Decimation::pass(const PassPlan& plan, const Envelope& envelope, std::size_t most_collapses,
                       Progress& progress) {
   ++pass_;
   std::vector<std::int32_t> all(mesh_.vertices());
   std::iota(all.begin(), all.end(), 0);
-  TileDecimation(*this, 0, plan, envelope).run(all, most_faces, progress);
+  TileDecimation(*this, 0, plan, envelope).run(all, most_collapses, progress);
 }
 
 std::size_t Decimation::pass(const PassPlan& plan, Originals& originals, const Workers& workers,
@@ -79,15 +79,15 @@ std::size_t Decimation::pass(const PassPlan& plan, Originals& originals, const W
   for_each_tile(plan, tiles, originals, workers, progress, all, [&](std::size_t t, const Envelope& envelope) {
     TileDecimation tile(*this, static_cast<std::int32_t>(t), plan, envelope);
     if (plan.relax) tile.relax(vertices_of(t), progress);
-    gone += tile.run(vertices_of(t), kAllFaces, progress);
+    gone += tile.run(vertices_of(t), kAllCollapses, progress);
     progress.advance(plan.share * static_cast<double>(vertices_of(t).size()) /
                      static_cast<double>(members_.size()));
   });
   return gone;
 }
 
-std::size_t Decimation::pass_losing(std::size_t faces, PassPlan plan, Originals& originals,
-                                    const Workers& workers, Progress& progress) {
+std::size_t Decimation::pass_of(std::size_t collapses, PassPlan plan, Originals& originals,
+                                const Workers& workers, Progress& progress) {
   const Tiles tiles = begin_pass(plan, originals);
   const auto all = [](std::size_t) { return true; };
   std::vector<std::vector<std::uint32_t>> edges(begin_.size() - 1);
@@ -96,14 +96,14 @@ std::size_t Decimation::pass_losing(std::size_t faces, PassPlan plan, Originals&
     if (plan.relax) tile.relax(vertices_of(t), progress);
     edges[t] = tile.count_costs(vertices_of(t), progress);
   });
-  const Shares shares = cheapest_shares(edges, (faces + 1) / 2);
+  const Shares shares = cheapest_shares(edges, collapses);
   plan.cost_classes = shares.cost_classes;
   std::atomic<std::size_t> gone = 0;
   const auto wanted = [&](std::size_t t) { return shares.collapses[t] > 0; };
   for_each_tile(plan, tiles, originals, workers, progress, wanted,
                 [&](std::size_t t, const Envelope& envelope) {
                   TileDecimation tile(*this, static_cast<std::int32_t>(t), plan, envelope);
-                  gone += tile.run(vertices_of(t), 2 * shares.collapses[t], progress);
+                  gone += tile.run(vertices_of(t), shares.collapses[t], progress);
                   progress.advance(plan.share * static_cast<double>(vertices_of(t).size()) /
                                    static_cast<double>(members_.size()));
                 });

@@ -31,7 +31,7 @@ struct PassPlan {
   double share = 0;                         // of `progress`
 };
 
-inline constexpr std::size_t kAllFaces = std::numeric_limits<std::size_t>::max();
+inline constexpr std::size_t kAllCollapses = std::numeric_limits<std::size_t>::max();
 
 class Decimation {
  public:
@@ -42,14 +42,14 @@ class Decimation {
   PlanMesh& mesh() { return mesh_; }
   PlanMesh release() && { return std::move(mesh_); }  // and the rest with it
 
-  // The whole mesh as one tile, which may lose so many faces.
-  void pass(const PassPlan& plan, const Envelope& envelope, std::size_t most_faces, Progress& progress);
+  // The whole mesh as one tile, with so many collapses at most.
+  void pass(const PassPlan& plan, const Envelope& envelope, std::size_t most_collapses, Progress& progress);
   // Tile by tile. Returns how many faces went. Advances `progress` by the plan's share.
   std::size_t pass(const PassPlan& plan, Originals& originals, const Workers& workers, Progress& progress);
-  // The same of the cheapest edges: no more faces go than `faces`, give or take 1, half as many if there are
-  // many. Each tile has a part of them by the number of its cheap edges.
-  std::size_t pass_losing(std::size_t faces, PassPlan plan, Originals& originals, const Workers& workers,
-                          Progress& progress);
+  // The same with so many collapses at most, half as many if they are many, of the cheapest edges. Each tile
+  // has a part of them by the number of its cheap edges.
+  std::size_t pass_of(std::size_t collapses, PassPlan plan, Originals& originals, const Workers& workers,
+                      Progress& progress);
 
   // Gives back the memory of what went.
   void compact();

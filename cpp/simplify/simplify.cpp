@@ -43,6 +43,13 @@ void check(const SimplifyOptions& options) {
     throw InvalidInput("block is " + std::to_string(options.block) + "; give 1 to " +
                        std::to_string(kMostCells) + ".");
   }
+  const SimplifyOptions::Bytes& bytes = options.target_bytes;
+  if (!(bytes.most >= 0 && bytes.of_vertex >= 0 && bytes.of_face > 0)) {
+    throw InvalidInput("target_bytes is " + number_text(bytes.most) + "; give 0 (no target) or more.");
+  }
+  if (bytes.most > 0 && options.target_faces > 0) {
+    throw InvalidInput("target_faces and target_bytes say the same thing; give only one of them.");
+  }
   if (!(options.least_gain >= 0 && options.least_gain <= 1)) {
     throw InvalidInput("least_gain is " + number_text(options.least_gain) + "; give a part, 0 to 1.");
   }
@@ -74,23 +81,46 @@ void decimate(Decimation& decimation, Originals& originals, const SimplifyOption
   }
 }
 
+// What is left is weighed in faces or in bytes.
+struct Target {
+  double most, of_vertex, of_face;
+
+  explicit Target(const SimplifyOptions& options)
+      : most(options.target_bytes.most),
+        of_vertex(options.target_bytes.of_vertex),
+        of_face(options.target_bytes.of_face) {
+    if (options.target_faces > 0) {
+      most = static_cast<double>(options.target_faces);
+      of_vertex = 0;
+      of_face = 1;
+    }
+  }
+  bool is_set() const { return most > 0; }
+  double faces() const { return most / (of_face + of_vertex / 2); }  // about
+  std::size_t collapses_to_go(const PlanMesh& mesh) const {
+    const double weight =
+        of_vertex * static_cast<double>(mesh.vertices()) + of_face * static_cast<double>(mesh.triangles());
+    return weight > most ? static_cast<std::size_t>(std::ceil((weight - most) / (of_vertex + 2 * of_face)))
+                         : 0;
+  }
+};
+
 // Until the target is reached; where the tolerance does not let it be, until little is gained.
-void decimate_to_target(Decimation& decimation, Originals& originals, const SimplifyOptions& options,
-                        const Workers& workers, Progress& progress) {
-  const auto target = static_cast<std::size_t>(options.target_faces);
+void decimate_to_target(Decimation& decimation, const Target& target, Originals& originals,
+                        const SimplifyOptions& options, const Workers& workers, Progress& progress) {
   double left = kShareOfPasses;
   std::size_t fruitless = 0;
   for (std::size_t n = 0; n < kMostPasses && fruitless < kLeastPasses; ++n) {
-    const std::size_t faces = decimation.mesh().triangles();
-    if (faces <= target) return;
+    const std::size_t collapses = target.collapses_to_go(decimation.mesh());
+    if (collapses == 0) return;
     PassPlan plan = plan_of(n, options.block);
     plan.relax = fruitless > 0;
     plan.share = 0.2 * left;
     left -= plan.share;
-    const std::size_t gone = decimation.pass_losing(faces - target, plan, originals, workers, progress);
+    const std::size_t gone = decimation.pass_of(collapses, plan, originals, workers, progress);
     decimation.compact();
-    const bool little = gone < (faces - target) / 4 &&
-                        static_cast<double>(gone) < options.least_gain * static_cast<double>(faces);
+    const auto faces = static_cast<double>(decimation.mesh().triangles());
+    const bool little = gone < collapses / 2 && static_cast<double>(gone) < options.least_gain * faces;
     fruitless = little ? fruitless + 1 : 0;
   }
 }
@@ -145,16 +175,17 @@ SimplifiedTin simplify_dem(DemWindows& dem, const DemPlace& place, const Simplif
   budget.require(bytes, "Simplifying the DEM", "Give a part of it.");
   BlockPlan blocks{
       .block = options.block, .keep_border = options.keep_border, .pass = {.share = kShareOfBlocks}};
-  if (options.target_faces > 0) {
-    const double target = static_cast<double>(options.target_faces);
+  const Target target(options);
+  if (target.is_set()) {
+    const std::size_t faces = count_faces(originals, options.block, progress);
     blocks.least_part =
-        kSpareForTarget * target / static_cast<double>(count_faces(originals, options.block, progress));
+        kSpareForTarget * target.faces() / static_cast<double>(std::max<std::size_t>(faces, 1));
   }
   BlocksDecimated done = decimate_blocks(originals, blocks, budget, workers, progress);
   if (done.faces_before == 0)
     throw InvalidInput("The DEM has no three samples side by side that are not nodata: it makes no surface.");
-  if (options.target_faces > 0) {
-    decimate_to_target(done.left, originals, options, workers, progress);
+  if (target.is_set()) {
+    decimate_to_target(done.left, target, originals, options, workers, progress);
   } else {
     decimate(done.left, originals, options, workers, progress);
   }

@@ -41,9 +41,13 @@ struct SimplifyOptions {
   Grid<float> tolerance;     // of each sample, metres, linear on each triangle; empty = tolerance_m
   Grid<std::uint8_t> keep;   // samples that stay vertices at their own height where not 0; empty = none
   bool keep_border = false;  // all samples of the outline and of holes stay: neighbouring tiles fit
-  // Stop as soon as there are no more faces, cheapest collapses first (one thread); 0 = until nothing can be
-  // removed.
+  // Stop as soon as there are no more faces, give or take one, what is cheap everywhere first; or as soon as
+  // vertices and faces take no more bytes. 0 = until nothing can be removed. The tolerance may leave more.
   std::int64_t target_faces = 0;
+  struct Bytes {
+    double most = 0;
+    double of_vertex = 24, of_face = 17;  // a binary PLY's
+  } target_bytes;
   // Passes go on as long as one removes this part of the faces left (four at least). Smaller: fewer faces,
   // more time (docs/performance.md).
   double least_gain = 0.01;

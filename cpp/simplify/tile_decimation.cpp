@@ -32,11 +32,11 @@ void TileDecimation::relax(std::span<const std::int32_t> vertices, Progress& pro
   }
 }
 
-std::size_t TileDecimation::run(std::span<const std::int32_t> vertices, std::size_t most,
+std::size_t TileDecimation::run(std::span<const std::int32_t> vertices, std::size_t most_collapses,
                                 Progress& progress) {
   for (const std::int32_t v : vertices) push_untested_edges(v);
   Edge edge{};
-  for (std::size_t n = 0; faces_gone_ + 1 < most && pop(edge); ++n) {
+  for (std::size_t n = 0; collapses_ < most_collapses && pop(edge); ++n) {
     if (n % kCheckEvery == 0) progress.check();
     try_collapse(corner_of(edge));
   }
@@ -154,6 +154,7 @@ void TileDecimation::collapse(const Point& to, const QuadricSum& quadric) {
   if (!stays(a)) mesh_.move(a, to);
   mesh_.collapse(star_.corner, a);
   faces_gone_ += star_.right < 0 ? 1 : 2;
+  ++collapses_;
   all_.quadrics_[at(a)] = quadric.seen_from(to);
   ++state(a).moves;
   has_changed(a);

@@ -20,8 +20,8 @@ class TileDecimation {
 
   // `vertices` are those of the tile.
   void relax(std::span<const std::int32_t> vertices, Progress& progress);
-  // Returns how many faces went, not more than `most`.
-  std::size_t run(std::span<const std::int32_t> vertices, std::size_t most, Progress& progress);
+  // Returns how many faces went, by so many collapses at most.
+  std::size_t run(std::span<const std::int32_t> vertices, std::size_t most_collapses, Progress& progress);
   // How many edges run() would try, by class of their costs.
   std::vector<std::uint32_t> count_costs(std::span<const std::int32_t> vertices, Progress& progress);
 
@@ -58,7 +58,7 @@ class TileDecimation {
   const PassPlan& plan_;
   BucketQueue<Edge> queue_;
   EdgeStar star_;
-  std::size_t faces_gone_ = 0;
+  std::size_t faces_gone_ = 0, collapses_ = 0;
 };
 
 }  // namespace sightbound

@@ -42,6 +42,7 @@ class DemToTin(SimplificationAlgorithm):
             "KEEP_BORDER", tr("Keep all samples of the outline (tiles that fit)"), False, True
         )
         faces = blocks.number("TARGET_TRIANGLES", tr("Stop at so many triangles"), None, 1, None, integer=True)
+        size = blocks.number("TARGET_SIZE", tr("Stop at a file of so many megabytes"), None, 0.001)
         growth = blocks.number("FOCUS_GROWTH", tr("Growth of the tolerance, metres for each kilometre"), None, 0.0)
         for parameter in (
             blocks.dem_block()
@@ -57,6 +58,7 @@ class DemToTin(SimplificationAlgorithm):
                 blocks.advanced(places("KEEP", tr("Places to keep at full resolution"))),
                 blocks.advanced(border),
                 blocks.advanced(faces),
+                blocks.advanced(size),
                 blocks.vertical_unit_parameter(),
                 blocks.extent_parameter(),
                 blocks.threads_parameter(),
@@ -81,6 +83,8 @@ class DemToTin(SimplificationAlgorithm):
             return tr("{}: the accuracy of the heights says the same thing; give only one of them.").format(said[0])
         if not said and not any(given(parameters, name) for name in errors):
             return tr("TOLERANCE: say how far the TIN may be from the elevation model, here or as VERTICAL_ACCURACY.")
+        if given(parameters, "TARGET_TRIANGLES") and given(parameters, "TARGET_SIZE"):
+            return tr("TARGET_SIZE: TARGET_TRIANGLES says the same thing; give only one of them.")
         if given(parameters, "FOCUS") != given(parameters, "FOCUS_GROWTH"):
             return tr("FOCUS_GROWTH: give it together with FOCUS, or none of the two.")
         if given(parameters, "FOCUS") and not given(parameters, "TOLERANCE"):
@@ -101,6 +105,7 @@ class DemToTin(SimplificationAlgorithm):
 
     def compute(self, sightbound, parameters, context, feedback):
         faces = number_or_none(self, parameters, "TARGET_TRIANGLES", context)
+        megabytes = number_or_none(self, parameters, "TARGET_SIZE", context)
         tolerance = self.tolerance
         if self.focus:
             tolerance = tolerance + self.growth / 1000.0 * distances_from(self.focus, self.dem, "FOCUS")
@@ -113,6 +118,8 @@ class DemToTin(SimplificationAlgorithm):
             keep=samples_in(self.keep, self.dem),
             keep_border=self.parameterAsBoolean(parameters, "KEEP_BORDER", context),
             target_faces=None if faces is None else int(faces),
+            target_bytes=None if megabytes is None else megabytes * 1e6,
+            target_ending=self._ending(parameters, context),
             threads=self.threads(parameters, context),
             progress=Progress(feedback, 0.0, 90.0),
         )
@@ -127,6 +134,9 @@ class DemToTin(SimplificationAlgorithm):
                 feedback.pushWarning(warning)
             self._load(path, name, context)
         return results
+
+    def _ending(self, parameters, context):
+        return self.parameterAsFileOutput(parameters, "OUTPUT", context).rpartition(".")[2].lower()
 
     def _told(self, report, feedback):
         for warning in report["warnings"]:

@@ -148,6 +148,20 @@ def test_it_stops_at_a_number_of_faces(dem):
     assert 498 <= len(tin.faces) <= 502 and tin.report["largest_deviation"] < 50
 
 
+@pytest.mark.parametrize("ending", ["ply", "nc", "gpkg", "2dm", "obj"])
+def test_it_stops_at_a_size_of_the_file(dem, tmp_path, ending):
+    path = tmp_path / f"tin.{ending}"
+    least = {"ply": 20_000, "nc": 40_000, "gpkg": 300_000, "2dm": 40_000, "obj": 40_000}[ending]
+    tin = sb.dem_to_tin(dem, tolerance=50.0, target_bytes=least, target_ending=ending)
+    assert tin.report["warnings"] == []
+    tin.write(path)
+    assert path.stat().st_size <= least
+    if ending == "ply":
+        assert path.stat().st_size > least - 24 - 2 * 17 - 20
+    tin = sb.dem_to_tin(dem, tolerance=0.01, target_bytes=least, target_ending=ending)
+    assert "more than target_bytes" in tin.report["warnings"][0]
+
+
 def test_the_same_bytes_for_any_number_of_threads(dem):
     one, two = (sb.dem_to_tin(dem, tolerance=1.5, threads=n) for n in (1, 2))
     assert np.array_equal(one.vertices, two.vertices) and np.array_equal(one.faces, two.faces)
@@ -173,6 +187,10 @@ def test_it_can_be_cancelled(dem):
     ({"tolerance": float("nan")}, "tolerance"),
     ({"tolerance": np.ones((3, 3))}, "tolerance has shape"),
     ({"tolerance": 1.0, "target_faces": 0}, "target_faces is 0"),
+    ({"tolerance": 1.0, "target_bytes": 0}, "target_bytes is 0"),
+    ({"tolerance": 1.0, "target_bytes": 100}, "takes more than"),
+    ({"tolerance": 1.0, "target_bytes": 1e5, "target_faces": 7}, "only one of them"),
+    ({"tolerance": 1.0, "target_bytes": 1e5, "target_ending": "shp"}, "ends in 'shp'"),
     ({"tolerance": 1.0, "keep": np.ones((3, 3))}, "keep has shape"),
     ({"error_model": sb.ErrorModel(1, 0, 0), "confidence": 1.0}, "confidence"),
 ])

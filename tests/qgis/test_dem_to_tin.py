@@ -76,6 +76,8 @@ def test_tiles_and_targets(run, dem, tmp_path):
     kept = simplify(run, dem, tmp_path, TOLERANCE=20.0, KEEP_BORDER=True)
     assert kept["TRIANGLES"] >= 2 * (39 + 29) - 2 > simplify(run, dem, tmp_path, TOLERANCE=20.0)["TRIANGLES"]
     assert abs(simplify(run, dem, tmp_path, TOLERANCE=20.0, TARGET_TRIANGLES=300)["TRIANGLES"] - 300) <= 2
+    small = simplify(run, dem, tmp_path, TOLERANCE=20.0, TARGET_SIZE=0.01, OUTPUT=str(tmp_path / "small.ply"))
+    assert 9_900 < (tmp_path / "small.ply").stat().st_size <= 10_000 and small["TRIANGLES"] > 300
 
 
 def test_places_to_keep(run, dem, observers, tmp_path):
