@@ -9,6 +9,7 @@
 #include <pybind11/stl.h>
 
 #include "jobs/dem_to_tin_job.h"
+#include "jobs/visibility_tolerance_job.h"
 #include "terrain/regular_tin.h"
 
 namespace sightbound::python {
@@ -58,11 +59,26 @@ py::tuple dem_to_tin(const std::shared_ptr<DemSource>& dem, const ErrorModel& mo
   return py::make_tuple(std::move(tin), std::move(report));
 }
 
+py::tuple visibility_tolerance(const std::shared_ptr<DemSource>& dem, const std::vector<Observer>& observers,
+                               const ErrorModel& model, double tolerance, const ViewshedOptions& options,
+                               const py::object& progress) {
+  using namespace py::literals;
+  VisibilityTolerance made =
+      ProgressBridge(progress).run([&, who = observers, given = model, used = options](Progress& p) {
+        return run_visibility_tolerance(*dem, who, given, tolerance, used, p);
+      });
+  py::dict report("free_share"_a = made.free_share, "error_model"_a = made.error_model,
+                  "warnings"_a = made.warnings);
+  return py::make_tuple(array_from(std::move(made.tolerance)), std::move(report));
+}
+
 }  // namespace
 
 void bind_simplify(py::module_& m) {
   bind_options(m);
   m.def("dem_to_tin", &dem_to_tin, py::arg("dem"), py::arg("model"), py::arg("options"), py::arg("progress"));
+  m.def("visibility_tolerance", &visibility_tolerance, py::arg("dem"), py::arg("observers"), py::arg("model"),
+        py::arg("tolerance"), py::arg("options"), py::arg("progress"));
 }
 
 }  // namespace sightbound::python

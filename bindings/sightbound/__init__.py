@@ -24,6 +24,7 @@ from .tin import Tin, read_tin, tin_layers
 from .verification import Verification, verify
 from .viewshed import viewshed, viewsheds
 from .viewshed_result import ViewshedResult
+from .visibility_tolerance import visibility_tolerance
 from .volume import CoverRasters, ErrorVolume
 from .volume_sight import Subtraction, estimate_volume_viewshed, subtract_observer, volume_viewshed
 from .volume_targets import TargetSight, VolumeLayer, volume_layer, volume_targets
@@ -71,6 +72,7 @@ __all__ = [
     "verify",
     "viewshed",
     "viewsheds",
+    "visibility_tolerance",
     "volume_layer",
     "volume_targets",
     "volume_viewshed",

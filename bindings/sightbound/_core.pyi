@@ -332,6 +332,14 @@ class DemToTinOptions:
     memory_budget: int
     def __init__(self) -> None: ...
 
+def visibility_tolerance(
+    dem: DemSource,
+    observers: list[Observer],
+    model: ErrorModel,
+    tolerance: float,
+    options: ViewshedOptions,
+    progress: _Progress | None,
+) -> tuple[_Floats, dict[str, Any]]: ...
 def dem_to_tin(
     dem: DemSource, model: ErrorModel, options: DemToTinOptions, progress: _Progress
 ) -> tuple[Tin, dict[str, Any]]: ...
