@@ -90,7 +90,8 @@ BlocksDecimated decimate_blocks(Originals& originals, const BlockPlan& plan, con
       whole.add(std::move(one.left), one.window, joiner);
     }
     whole.expect_of_all(static_cast<double>(end) / down);
-    budget.require(whole.bytes() + bytes_of_blocks(originals, plan.block, workers.count()),
+    // A third more while a pass's leavings are put together.
+    budget.require(whole.bytes() / 3 * 4 + bytes_of_blocks(originals, plan.block, workers.count()),
                    "What is left of the first " + std::to_string(100 * end / down) + " % of the DEM",
                    "Give a larger tolerance, or a part of it.");
   }
