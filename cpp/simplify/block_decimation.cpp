@@ -110,7 +110,7 @@ std::size_t bytes_of_blocks(const Originals& originals, int block, int threads) 
   const auto blocks = static_cast<std::int64_t>(count_blocks(rows, block)) * count_blocks(cols, block);
   const auto samples = at(std::min(rows, block + 1)) * at(std::min(cols, block + 1));
   return samples * kBytesOfSample * static_cast<std::size_t>(std::min<std::int64_t>(threads, blocks)) +
-         originals.bytes(block);
+         originals.bytes(kLargestTile * block);
 }
 
 std::size_t count_faces(Originals& originals, int block, Progress& progress) {

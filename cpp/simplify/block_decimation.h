@@ -29,7 +29,9 @@ struct BlocksDecimated {
 BlocksDecimated decimate_blocks(Originals& originals, const BlockPlan& plan, const MemoryBudget& budget,
                                 const Workers& workers, Progress& progress);
 
-// Bytes at most, what is left of the blocks excepted.
+inline constexpr int kLargestTile = 4;  // blocks a side, in the passes to come
+
+// Bytes at most, those of the passes to come included, what is left of the blocks excepted.
 std::size_t bytes_of_blocks(const Originals& originals, int block, int threads);
 
 // Triangles of the regular TIN.

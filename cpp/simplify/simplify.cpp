@@ -55,13 +55,18 @@ void check(const SimplifyOptions& options) {
   }
 }
 
-// Tiles wander, so that what lies at a seam in one pass lies inside a tile in another: after three passes
-// nothing has always been at one, rims of blocks included.
-PassPlan plan_of(std::size_t n, int tile) {
-  constexpr std::array<std::array<int, 2>, 4> kShifts{
-      {{2, 2}, {0, 2}, {2, 0}, {0, 0}}};  // quarters of a tile
+// Tiles wander, so that what lies at a seam in one pass lies inside a tile in another; with odd eighths none
+// has its edges at rims of blocks. They grow as faces do: with few of them in a tile, most would lie at
+// seams.
+PassPlan plan_of(std::size_t n, const Decimation& decimation, const Originals& originals, int block) {
+  constexpr std::array<std::array<int, 2>, 4> kShifts{{{1, 1}, {5, 5}, {1, 5}, {5, 1}}};  // eighths of a tile
+  constexpr double kFacesOfTile = 1000;
+  const double density = static_cast<double>(decimation.mesh().triangles()) /
+                         (static_cast<double>(originals.rows()) * originals.cols());
+  int tile = block;
+  while (tile < kLargestTile * block && density * tile * tile < kFacesOfTile) tile *= 2;
   const auto [x, y] = kShifts[n % kShifts.size()];
-  return {.tile = tile, .shift_x = x * tile / 4, .shift_y = y * tile / 4};
+  return {.tile = tile, .shift_x = x * tile / 8, .shift_y = y * tile / 8};
 }
 constexpr std::size_t kLeastPasses = 3, kMostPasses = 100;
 
@@ -70,7 +75,7 @@ void decimate(Decimation& decimation, Originals& originals, const SimplifyOption
               const Workers& workers, Progress& progress) {
   double left = kShareOfPasses;
   for (std::size_t n = 0; n < kMostPasses; ++n) {
-    PassPlan plan = plan_of(n, options.block);
+    PassPlan plan = plan_of(n, decimation, originals, options.block);
     plan.relax = true;
     plan.share = 0.5 * left;
     left -= plan.share;
@@ -113,7 +118,7 @@ void decimate_to_target(Decimation& decimation, const Target& target, Originals&
   for (std::size_t n = 0; n < kMostPasses && fruitless < kLeastPasses; ++n) {
     const std::size_t collapses = target.collapses_to_go(decimation.mesh());
     if (collapses == 0) return;
-    PassPlan plan = plan_of(n, options.block);
+    PassPlan plan = plan_of(n, decimation, originals, options.block);
     plan.relax = fruitless > 0;
     plan.share = 0.2 * left;
     left -= plan.share;

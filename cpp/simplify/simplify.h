@@ -74,13 +74,13 @@ struct SimplifiedTin {
   SimplifyReport report;
 };
 
-// Reads the DEM as it goes along, some eight times, and holds a band of its rows, 11 MiB a thread, and 72 bytes
-// for each face that the first pass leaves: on rough ground some 70,000 for a million samples at 5 m. Tolerance
-// and samples to keep are those of the windows: a `tolerance_m` holds where they bring none. Throws
+// Reads the DEM as it goes along, some eight times, and holds a band of its rows, 11 MiB a thread, and 72
+// bytes for each face that the first pass leaves: on rough ground some 70,000 for a million samples at 5 m.
+// Tolerance and samples to keep are those of the windows: a `tolerance_m` holds where they bring none. Throws
 // InvalidInput (a tolerance that is negative or not finite, an infinite height, fewer than 2 x 2 samples, no
 // triangle, sizes that do not agree, more than 2^20 samples a side), OverBudget (as soon as what is left does
-// not fit, or is more than 2^29 faces), Cancelled. On rough ground 16 microseconds of processor a sample for a
-// tolerance of 5 m, 60 for 1 m (docs/performance.md). Advances `progress` by 1 in all.
+// not fit, or is more than 2^29 faces), Cancelled. On rough ground 16 microseconds of processor a sample for
+// a tolerance of 5 m, 60 for 1 m (docs/performance.md). Advances `progress` by 1 in all.
 SimplifiedTin simplify_dem(DemWindows&, const DemPlace&, const SimplifyOptions&, Progress&);
 
 // The same of a DEM in memory.
