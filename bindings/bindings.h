@@ -24,6 +24,7 @@ void bind_simplify(py::module_& m);
 void bind_volume(py::module_& m);
 void bind_hidden_volume(py::module_& m);
 void bind_volume_targets(py::module_& m);
+void bind_simplify_tin(py::module_& m);
 void bind_verify(py::module_& m);
 void bind_defaults(py::module_& m);
 

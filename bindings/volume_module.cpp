@@ -14,4 +14,5 @@ PYBIND11_MODULE(_volume, m) {
   python::bind_volume(m);
   python::bind_hidden_volume(m);
   python::bind_volume_targets(m);
+  python::bind_simplify_tin(m);
 }

@@ -12,6 +12,7 @@ from .algorithms.confidence_viewshed import ConfidenceViewshed
 from .algorithms.dem_to_tin import DemToTin
 from .algorithms.error_surfaces import ErrorSurfaces
 from .algorithms.line_of_sight_profile import LineOfSightProfile
+from .algorithms.simplify_tin import SimplifyTin
 from .algorithms.subtract_observer import SubtractObserver
 from .algorithms.verify_tin import VerifyTin
 from .algorithms.volume_targets import VolumeTargets
@@ -29,6 +30,7 @@ _ALGORITHMS = (
     SubtractObserver,
     VolumeToRaster,
     DemToTin,
+    SimplifyTin,
     VerifyTin,
 )
 

@@ -27,6 +27,7 @@ def reference(provider):
         "confidenceviewshed", "errorsurfaces", "lineofsightprofile",
         "builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster",
         "demtotin",
+        "simplifytin",
         "verifytin",
     )
     return HEAD + "".join(section(provider.algorithm(name)) for name in names)

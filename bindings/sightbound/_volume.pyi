@@ -176,3 +176,17 @@ def subtract_observer(
     height: float,
     progress: _Progress,
 ) -> tuple[HiddenVolume, dict[str, Any], dict[str, Any], list[str]]: ...
+
+class SimplifyTinJob:
+    tolerance: float | None
+    model: ErrorModel
+    confidence: float
+    border_tolerance: float | None
+    target_faces: int
+    voxel: float
+    threads: int
+    memory_budget: int
+    def __init__(self) -> None: ...
+    def set_keep(self, values: npt.NDArray[np.uint8]) -> None: ...
+
+def simplify_tin(tin: Tin, job: SimplifyTinJob, progress: _Progress) -> tuple[Tin, dict[str, Any]]: ...

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from . import _arguments as arguments
 from . import _quantities as quantities
-from ._loading import core
+from ._loading import core, volume_core
 from .dem import Dem, core_dem
 from .error_model import ErrorModel, core_model
-from .tin import Tin
+from .tin import Tin, core_tin
+from .volume import model_of_tin, optional_length
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ _LARGEST = 10000.0  # metres, of tolerances as of errors
 
 
 class SimplifiedTin(Tin):
-    """A TIN with a `report` on how it was made. The face attribute "deviation" is the largest on that face, metres, rounded up."""
+    """A TIN with a `report` on how it was made."""
 
     __slots__ = ("_report",)
 
@@ -32,9 +33,15 @@ class SimplifiedTin(Tin):
 
     @property
     def report(self) -> dict[str, Any]:
-        """faces_before, faces_after; largest_deviation (metres) and largest_ratio (of deviation to tolerance), certified: nowhere
-        more, also inside triangles; least_tolerance, largest_tolerance (metres, at the samples); error_model (JSON of what was
-        used, None with a tolerance); warnings; version."""
+        """faces_before, faces_after; least_tolerance, largest_tolerance (metres, at the samples); error_model (JSON of what was
+        used, None with a tolerance); warnings; version.
+
+        Of dem_to_tin(): largest_deviation (metres) and largest_ratio (of deviation to tolerance), certified: nowhere more, also
+        inside triangles.
+        Of simplify(): method ("vertical" or "distance": how the tolerance is measured), largest_deviation (as above, and the face
+        attribute too; None by distance, where the tolerance is what is certified), border_tolerance (metres), voxel (metres;
+        0 when the tolerance is too small for any), faces_not_held (of the original, too steep or too well known for the voxels:
+        little goes there), fixed_vertices (where the surface is not manifold)."""
         return self._report
 
 
@@ -58,7 +65,8 @@ def dem_to_tin(
 
     The original is the surface that viewsheds use: all samples, every square of four split along its NW-SE diagonal. At every
     place, inside triangles as well as at samples, |height of the TIN - height of the original| <= tolerance there. The outline,
-    holes and islands of nodata stay. The same bytes for any number of threads.
+    holes and islands of nodata stay. The same bytes for any number of threads. The face attribute "deviation" is the largest on
+    that face, metres, rounded up.
 
     Args:
         dem: as read_dem() returns it, in a projected CRS or none.
@@ -114,6 +122,78 @@ def dem_to_tin(
         report["warnings"] = [_of_tolerance(warning) for warning in report["warnings"]]
     report["version"] = core.__version__
     return _wrapped(made, report)
+
+
+def simplify(
+    tin: Tin,
+    *,
+    tolerance: float | None = None,
+    error_model: ErrorModel | None = None,
+    confidence: float = _DEFAULTS["confidence"],
+    border_tolerance: float | None = None,
+    keep: npt.ArrayLike | None = None,
+    target_faces: int | None = None,
+    voxel_size: float | None = None,
+    threads: int | None = None,
+    memory_budget: float | None = None,
+    progress: Progress | None = None,
+) -> SimplifiedTin:
+    """Makes a TIN of few triangles that stays within a tolerance of any TIN, or within its error: overhangs and buildings too.
+
+    At every place of the result, inside triangles as well as at vertices, the distance from the original is within the tolerance,
+    and at every place of the original that from the result: vertically for height fields, else to the nearest place. Topology stays:
+    parts, holes, tunnels. The same bytes for any number of threads.
+
+    Height fields use the whole tolerance. For others it is kept in voxels (of voxel_size), which costs some of it. From a DEM,
+    dem_to_tin() is faster and leaves fewer triangles.
+
+    Args:
+        tin: what to simplify. Attributes are left out; where it is not manifold it stays as it is.
+        tolerance: metres, one for all places.
+        error_model: instead of a tolerance: the result stays in the error volume. Numbers only, as for ErrorVolume.build().
+        confidence: of the error, between 0 and 1.
+        border_tolerance: metres that the outline, also of holes, may move: in plan for height fields, else in space; its vertices
+            stay or go, its corners (60 degrees and more) stay. None: for height fields 0, or z(confidence) times the model's
+            horizontal error; for others the least tolerance.
+        keep: array, one for each vertex: those that stay where above 0.
+        target_faces: stop at that many faces (give or take one), the cheapest removed first; None to remove all that can be.
+        voxel_size: metres; smaller voxels keep more of the tolerance, and take more time and memory. None to choose it.
+        threads: for the voxels; None for all cores. The collapses take one.
+        memory_budget: bytes; None for three quarters of the memory.
+        progress: called with the fraction done, at most ten times a second; False cancels.
+
+    Raises:
+        ValueError: neither or both of tolerance and error_model, a wrong argument.
+        MemoryError: the job would exceed the memory budget; a larger voxel_size helps.
+        Cancelled: progress returned False.
+    """
+    if (tolerance is None) == (error_model is None):
+        raise ValueError("give either tolerance (metres) or error_model with vertical_rmse: how far the TIN may be from the original.")
+    job = volume_core().SimplifyTinJob()
+    if tolerance is not None:
+        job.tolerance = arguments.number("tolerance", tolerance)
+    else:
+        job.model = model_of_tin(error_model)
+    job.confidence = arguments.number("confidence", confidence)
+    if border_tolerance is not None:
+        job.border_tolerance = arguments.number("border_tolerance", border_tolerance)
+    if keep is not None:
+        job.set_keep(_kept(keep, core_tin(tin).vertex_count))
+    job.target_faces = 0 if target_faces is None else _count(target_faces)
+    job.voxel = optional_length("voxel_size", voxel_size)
+    job.threads = arguments.threads(threads)
+    job.memory_budget = arguments.memory_budget(memory_budget)
+    made, report = volume_core().simplify_tin(core_tin(tin), job, progress)
+    report["error_model"] = report["error_model"] or None
+    report["version"] = core.__version__
+    return _wrapped(made, report)
+
+
+def _kept(given: Any, vertices: int) -> Any:
+    values = arguments.float_array(given)
+    if values.shape != (vertices,):
+        raise ValueError(f"keep has shape {values.shape}, the TIN has {vertices} vertices; give one value for each.")
+    return (values > 0).astype("uint8")
 
 
 def _as_model(tolerance: Quantity, dem: Dem) -> ErrorModel:

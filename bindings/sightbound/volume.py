@@ -224,7 +224,7 @@ def _terrain(
     if isinstance(terrain, Tin):
         if extent is not None:
             raise ValueError("extent is for a Dem; a Tin is taken as a whole.")
-        return volume_core().volume_terrain_of_tin(terrain._core, _model_of_tin(error_model), progress)
+        return volume_core().volume_terrain_of_tin(terrain._core, model_of_tin(error_model), progress)
     if not isinstance(terrain, Dem):
         raise TypeError(f"terrain must be a sightbound.Dem or sightbound.Tin; got {type(terrain).__name__}.")
     return volume_core().volume_terrain_of_dem(
@@ -237,7 +237,8 @@ def _terrain(
     )
 
 
-def _model_of_tin(model: Any) -> core.ErrorModel:
+def model_of_tin(model: Any) -> core.ErrorModel:
+    """The compiled side of the argument `error_model` that goes with a Tin."""
     if model is None:
         raise ValueError(
             "error_model is None, but a Tin's error cannot be learnt from it; "
@@ -254,8 +255,8 @@ def _options(
     voxel: Any, voxel_height: Any, confidence: Any, largest_confidence: Any, threads: Any, memory_budget: Any
 ) -> _volume.VolumeOptions:
     options = volume_core().VolumeOptions()
-    options.voxel_m = _length("voxel", voxel)
-    options.voxel_height_m = _length("voxel_height", voxel_height)
+    options.voxel_m = optional_length("voxel", voxel)
+    options.voxel_height_m = optional_length("voxel_height", voxel_height)
     options.confidence = arguments.number("confidence", confidence)
     if largest_confidence is not None:
         options.largest_confidence = arguments.number("largest_confidence", largest_confidence)
@@ -264,7 +265,7 @@ def _options(
     return options
 
 
-def _length(name: str, value: Any) -> float:
+def optional_length(name: str, value: Any) -> float:
     """A positive length; 0 for None, the core's own choice."""
     if value is None:
         return 0.0

@@ -1,41 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """DEM to TIN: few triangles that stay within the terrain's error, or within a tolerance, at every place."""
 
-from qgis.core import (
-    QgsProcessingContext,
-    QgsProcessingOutputNumber,
-    QgsProcessingOutputString,
-    QgsProcessingParameterBoolean,
-    QgsProcessingParameterFileDestination,
-    QgsProcessingUtils,
-)
+from qgis.core import QgsProcessingParameterBoolean
 
 from .. import parameters as blocks
-from ..error_block import check_error_block, log_error_model, read_error_block
-from ..errors import core_errors
+from ..error_block import check_error_block, read_error_block
 from ..feedback import Progress
 from ..places_on_dem import distances_from, places, read_places, samples_in
 from ..rasters import open_dem, read_extent, read_raster
-from ..styling import StyleOnLoad
 from ..text import tr
 from ..values import given, number_or_none, word
-from .simplification_base import SimplificationAlgorithm
-
-MESH_FILES = "PLY (*.ply);;UGRID NetCDF (*.nc);;2DM (*.2dm);;OBJ (*.obj);;GeoPackage (*.gpkg)"
-# output, label, key of the report
-NUMBERS = (
-    ("TRIANGLES_BEFORE", "Triangles of the elevation model", "faces_before"),
-    ("TRIANGLES", "Triangles of the TIN", "faces_after"),
-    ("LARGEST_DEVIATION", "Largest deviation anywhere (m)", "largest_deviation"),
-    ("LARGEST_RATIO", "Largest share of the tolerance that is used", "largest_ratio"),
-)
+from .simplification_base import TinMaker
 
 
-class DemToTin(SimplificationAlgorithm):
+class DemToTin(TinMaker):
     NAME = "demtotin"
     TITLE = "DEM to TIN"
     SUMMARY = "How few triangles can carry this terrain without leaving its error, or a tolerance, anywhere?"
     TAGS = ("tin", "mesh", "triangulation", "simplify", "decimate", "tolerance", "error", "dem", "raster", "terrain")
+    NUMBERS = (
+        ("TRIANGLES_BEFORE", "Triangles of the elevation model", "faces_before"),
+        ("TRIANGLES", "Triangles of the TIN", "faces_after"),
+        ("LARGEST_DEVIATION", "Largest deviation anywhere (m)", "largest_deviation"),
+        ("LARGEST_RATIO", "Largest share of the tolerance that is used", "largest_ratio"),
+    )
 
     def initAlgorithm(self, configuration=None):
         border = QgsProcessingParameterBoolean(
@@ -65,14 +53,7 @@ class DemToTin(SimplificationAlgorithm):
             ]
         ):
             self.add(parameter)
-        self.add(QgsProcessingParameterFileDestination("OUTPUT", tr("TIN (mesh)"), MESH_FILES))
-        polygons = QgsProcessingParameterFileDestination(
-            "OUTPUT_POLYGONS", tr("TIN as polygons"), "GeoPackage (*.gpkg)"
-        )
-        self.add(polygons, True, False)
-        for name, label, _ in NUMBERS:
-            self.addOutput(QgsProcessingOutputNumber(name, tr(label)))
-        self.addOutput(QgsProcessingOutputString("ERROR_MODEL_USED", tr("Error model used (JSON)")))
+        self.add_outputs()
 
     def contradiction(self, parameters, context):
         errors = ("VERTICAL_ACCURACY", "ERROR_RASTER", "ERROR_MODEL")
@@ -123,40 +104,8 @@ class DemToTin(SimplificationAlgorithm):
             threads=self.threads(parameters, context),
             progress=Progress(feedback, 0.0, 90.0),
         )
-        results = self._told(tin.report, feedback)
-        for name, first in (("OUTPUT", 90.0), ("OUTPUT_POLYGONS", 95.0)):
-            if not given(parameters, name):
-                continue
-            path = results[name] = self.parameterAsFileOutput(parameters, name, context)
-            with core_errors(name):
-                warnings = tin.write(path, progress=Progress(feedback, first, first + 5.0))
-            for warning in warnings:
-                feedback.pushWarning(warning)
-            self._load(path, name, context)
-        return results
+        results = self.told(tin.report, feedback)
+        return {**results, **self.write_outputs(tin, parameters, context, feedback)}
 
     def _ending(self, parameters, context):
         return self.parameterAsFileOutput(parameters, "OUTPUT", context).rpartition(".")[2].lower()
-
-    def _told(self, report, feedback):
-        for warning in report["warnings"]:
-            feedback.pushWarning(warning)
-        results = {name: report[key] for name, _, key in NUMBERS}
-        for name, label, _ in NUMBERS:
-            feedback.pushInfo(f"{tr(label)}: {results[name]:.6g}")
-        if report["error_model"]:
-            log_error_model(feedback, report["error_model"])
-            results["ERROR_MODEL_USED"] = report["error_model"]
-        return results
-
-    def _load(self, path, name, context):
-        if context.project() is None or path.endswith(".obj"):  # QGIS reads no OBJ
-            return
-        polygons = path.endswith(".gpkg")
-        hint = QgsProcessingUtils.LayerHint
-        details = QgsProcessingContext.LayerDetails(
-            tr("TIN"), context.project(), name, hint.Vector if polygons else hint.Mesh
-        )
-        if not polygons:
-            details.setPostProcessor(StyleOnLoad("tin", 1.0))
-        context.addLayerToLoadOnCompletion(path, details)

@@ -1,8 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the algorithms of the group Simplification have in common."""
 
+from qgis.core import (
+    QgsProcessingContext,
+    QgsProcessingOutputNumber,
+    QgsProcessingOutputString,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingUtils,
+)
+
+from ..error_block import log_error_model
+from ..errors import core_errors
+from ..feedback import Progress
+from ..styling import StyleOnLoad
 from ..text import tr
+from ..values import given
 from .base import SightboundAlgorithm
+
+MESH_FILES = "PLY (*.ply);;UGRID NetCDF (*.nc);;2DM (*.2dm);;OBJ (*.obj);;GeoPackage (*.gpkg)"
 
 
 class SimplificationAlgorithm(SightboundAlgorithm):
@@ -11,3 +26,57 @@ class SimplificationAlgorithm(SightboundAlgorithm):
 
     def groupId(self):
         return "simplification"
+
+
+class TinMaker(SimplificationAlgorithm):
+    """One whose result is a TIN. NUMBERS: (output, label, key of the report)."""
+
+    NUMBERS = ()
+
+    def add_outputs(self):
+        self.add(QgsProcessingParameterFileDestination("OUTPUT", tr("TIN (mesh)"), MESH_FILES))
+        polygons = QgsProcessingParameterFileDestination(
+            "OUTPUT_POLYGONS", tr("TIN as polygons"), "GeoPackage (*.gpkg)"
+        )
+        self.add(polygons, True, False)
+        for name, label, _ in self.NUMBERS:
+            self.addOutput(QgsProcessingOutputNumber(name, tr(label)))
+        self.addOutput(QgsProcessingOutputString("ERROR_MODEL_USED", tr("Error model used (JSON)")))
+
+    def told(self, report, feedback):
+        """The numbers of a report, told in the log too."""
+        for warning in report["warnings"]:
+            feedback.pushWarning(warning)
+        results = {name: report[key] for name, _, key in self.NUMBERS}
+        for name, label, _ in self.NUMBERS:
+            feedback.pushInfo(f"{tr(label)}: {results[name]:.6g}")
+        if report["error_model"]:
+            log_error_model(feedback, report["error_model"])
+            results["ERROR_MODEL_USED"] = report["error_model"]
+        return results
+
+    def write_outputs(self, tin, parameters, context, feedback):
+        """Writes the TIN and has it loaded; the paths."""
+        paths = {}
+        for name, first in (("OUTPUT", 90.0), ("OUTPUT_POLYGONS", 95.0)):
+            if not given(parameters, name):
+                continue
+            path = paths[name] = self.parameterAsFileOutput(parameters, name, context)
+            with core_errors(name):
+                warnings = tin.write(path, progress=Progress(feedback, first, first + 5.0))
+            for warning in warnings:
+                feedback.pushWarning(warning)
+            self._load(path, name, context)
+        return paths
+
+    def _load(self, path, name, context):
+        if context.project() is None or path.endswith(".obj"):  # QGIS reads no OBJ
+            return
+        polygons = path.endswith(".gpkg")
+        hint = QgsProcessingUtils.LayerHint
+        details = QgsProcessingContext.LayerDetails(
+            tr("TIN"), context.project(), name, hint.Vector if polygons else hint.Mesh
+        )
+        if not polygons:
+            details.setPostProcessor(StyleOnLoad("tin", 1.0))
+        context.addLayerToLoadOnCompletion(path, details)

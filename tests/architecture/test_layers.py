@@ -15,7 +15,7 @@ BENEATH = {
     "error_model": {"base", "terrain", "earth"},
     "volume": {"base", "terrain", "earth", "error_model"},
     "sight": {"base", "terrain", "earth", "error_model", "volume"},
-    "simplify": {"base", "terrain"},
+    "simplify": {"base", "terrain", "volume"},
     "verify": {"base", "terrain"},
     "io": {"base", "terrain", "earth", "error_model"},
     "jobs": {"base", "terrain", "earth", "error_model", "volume", "sight", "simplify", "verify", "io"},

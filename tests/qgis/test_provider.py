@@ -12,7 +12,7 @@ from qgis.core import (
 
 VISIBILITY = ("confidenceviewshed", "errorsurfaces", "lineofsightprofile")
 VOLUME = ("builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster")
-SIMPLIFICATION = ("demtotin", "verifytin")
+SIMPLIFICATION = ("demtotin", "simplifytin", "verifytin")
 ALGORITHMS = VISIBILITY + VOLUME + SIMPLIFICATION
 ERROR_BLOCK = """VERTICAL_ACCURACY VERTICAL_MEASURE GEOLOGIC_VARIATION HORIZONTAL_ACCURACY HORIZONTAL_MEASURE
     ERROR_RASTER GEOLOGIC_MODEL GEOLOGIC_RANGE GEOLOGIC_RASTER TERRAIN_TYPES TERRAIN_FIELD TERRAIN_TABLE
@@ -65,7 +65,7 @@ def test_error_block_is_the_same_everywhere(provider):
         block = [algorithm.parameterDefinition(name) for name in ERROR_BLOCK]
         return [(one.type(), one.description(), one.defaultValue(), one.flags(), one.help()) for one in block]
 
-    blocks = [described(provider.algorithm(name)) for name in (*VISIBILITY, "builderrorvolume", "demtotin")]
+    blocks = [described(provider.algorithm(name)) for name in (*VISIBILITY, "builderrorvolume", "demtotin", "simplifytin")]
     assert all(block == blocks[0] for block in blocks)
 
 

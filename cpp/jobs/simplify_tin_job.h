@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A whole job: any TIN to one of few triangles inside its error volume, or within a tolerance.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "error_model/error_model.h"
+#include "terrain/tin.h"
+
+namespace sightbound {
+
+struct SimplifyTinJob {
+  // How far the surface may go: so many metres, or to the end of the error volume of `model` at a confidence.
+  // Vertically for height fields, else by distance.
+  std::optional<double> tolerance_m;
+  ErrorModel model;
+  double confidence = 0.95;
+  // How far the outline may go: in plan for height fields, else in space. Empty: height fields with a
+  // tolerance not at all, with a model by z(c) times its horizontal error; others by the least tolerance.
+  std::optional<double> border_tolerance_m;
+  std::vector<std::uint8_t> keep;  // vertices that stay where not 0; empty = none
+  std::int64_t target_faces = 0;   // 0 = until nothing can be removed
+  double voxel_m = 0;              // of the permission grid; 0 = chosen
+  int threads = 0;                 // of building it; 0 = all cores
+  std::size_t memory_budget = 0;   // bytes; 0 = three quarters of the machine's memory
+};
+
+struct SimplifyTinReport {
+  std::size_t faces_before = 0, faces_after = 0;
+  bool vertical = false;  // how the tolerance is measured
+  double least_tolerance_m = 0, largest_tolerance_m = 0;
+  std::optional<double> largest_deviation_m;  // of height fields: certified, nowhere more
+  double border_tolerance_m = 0;
+  double voxel_m = 0;              // 0: no voxel is small enough for the tolerance
+  std::size_t faces_not_held = 0;  // too steep or too well known for the voxels: little goes there
+  std::size_t fixed_vertices = 0;  // where the surface is not manifold
+  std::string error_model;         // JSON of what was used; empty with a tolerance
+  std::vector<std::string> warnings;
+};
+
+struct SimplifiedAnyTin {
+  Tin tin;
+  SimplifyTinReport report;
+};
+
+// Every point of the result is within the tolerance of the original (simplify/simplify_tin.h). The Tin must
+// be clean. Throws InvalidInput, OverBudget (naming the voxels that would fit), Cancelled.
+SimplifiedAnyTin run_simplify_tin(const Tin&, const SimplifyTinJob&, Progress&);
+
+}  // namespace sightbound

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Simplify TIN: few triangles inside the error volume of any TIN, overhangs and buildings too."""
+
+from qgis.core import QgsProcessing, QgsProcessingParameterFeatureSource, QgsProcessingParameterFile, QgsProcessingParameterMeshLayer
+
+from .. import parameters as blocks
+from ..error_block import check_error_block, read_error_block
+from ..errors import core_errors
+from ..feedback import Progress
+from ..text import tr
+from ..tins import open_mesh, open_tin, open_tin_file, read_areas, read_mesh, read_tin_file, read_tin_layer, tin_layer, vertices_in
+from ..values import given, number_or_none, word
+from .simplification_base import TinMaker
+
+SOURCES = ("INPUT", "TIN", "FILE")
+
+
+class SimplifyTin(TinMaker):
+    NAME = "simplifytin"
+    TITLE = "Simplify TIN"
+    SUMMARY = "How few triangles can carry a mesh or TIN of any shape without leaving its error, or a tolerance?"
+    TAGS = ("tin", "mesh", "simplify", "decimate", "generalise", "tolerance", "error", "3d", "building", "bridge", "overhang")
+    NUMBERS = (
+        ("TRIANGLES_BEFORE", "Triangles before", "faces_before"),
+        ("TRIANGLES", "Triangles after", "faces_after"),
+        ("LARGEST_TOLERANCE", "No place is further from the original than (m)", "largest_tolerance"),
+        ("BORDER_TOLERANCE_USED", "The outline moves at most (m)", "border_tolerance"),
+        ("VOXEL_USED", "Side of the voxels (m)", "voxel"),
+        ("FACES_NOT_HELD", "Faces too steep or too well known for the voxels", "faces_not_held"),
+    )
+
+    def initAlgorithm(self, configuration=None):
+        polygon = [QgsProcessing.SourceType.TypeVectorPolygon]
+        keep = QgsProcessingParameterFeatureSource("KEEP", tr("Areas to keep at full resolution"), polygon, None, True)
+        faces = blocks.number("TARGET_TRIANGLES", tr("Stop at so many triangles"), None, 1, None, integer=True)
+        file = QgsProcessingParameterFile("FILE", tr("File of a TIN: PLY, OBJ, 2DM, LandXML, ..."), optional=True)
+        for parameter in (
+            [
+                QgsProcessingParameterMeshLayer("INPUT", tr("Mesh layer (or a layer or a file below)"), None, True),
+                tin_layer("TIN", tr("3D layer: polygons, or points and lines to triangulate")),
+                file,
+                blocks.metres("TOLERANCE", tr("Tolerance in metres (empty: the error below)")),
+                blocks.confidence_parameter(),
+            ]
+            + blocks.error_block()
+            + [
+                blocks.advanced(blocks.metres("BORDER_TOLERANCE", tr("How far the outline may move (empty: chosen)"))),
+                blocks.advanced(keep),
+                blocks.advanced(faces),
+                blocks.advanced(blocks.metres("VOXEL", tr("Side of the voxels (empty: chosen)"))),
+                blocks.vertical_unit_parameter(),
+                blocks.threads_parameter(),
+            ]
+        ):
+            self.add(parameter)
+        self.add_outputs()
+
+    def contradiction(self, parameters, context):
+        if sum(given(parameters, name) for name in SOURCES) != 1:
+            return tr("INPUT: give a mesh here, or a layer as TIN, or a FILE; one of the three.")
+        errors = [name for name in ("VERTICAL_ACCURACY", "ERROR_RASTER", "ERROR_MODEL") if given(parameters, name)]
+        if given(parameters, "TOLERANCE") == bool(errors):
+            return tr("TOLERANCE: say how far the TIN may be from the original, here or as VERTICAL_ACCURACY; one of the two.")
+        return self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
+
+    def read_input(self, parameters, context, feedback):
+        self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
+        self.mesh = read_mesh(self, parameters, "INPUT", context)
+        self.layer = read_tin_layer(self, parameters, "TIN", context, feedback)
+        self.file = read_tin_file(self, parameters, "FILE", context)
+        self.error = read_error_block(self, parameters, context, feedback, self.mesh or self.layer)
+        self.keep = read_areas(self, parameters, "KEEP", context, feedback)
+
+    def compute(self, sightbound, parameters, context, feedback):
+        original = self._original(sightbound, feedback)
+        faces = number_or_none(self, parameters, "TARGET_TRIANGLES", context)
+        tolerance = number_or_none(self, parameters, "TOLERANCE", context)
+        made = sightbound.simplify(
+            original,
+            tolerance=tolerance,
+            error_model=self._model(sightbound) if tolerance is None else None,
+            confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
+            border_tolerance=number_or_none(self, parameters, "BORDER_TOLERANCE", context),
+            keep=vertices_in(self.keep, original, "KEEP", feedback),
+            target_faces=None if faces is None else int(faces),
+            voxel_size=number_or_none(self, parameters, "VOXEL", context),
+            threads=self.threads(parameters, context),
+            progress=Progress(feedback, 10.0, 90.0),
+        )
+        measured = tr("vertically") if made.report["method"] == "vertical" else tr("as the distance to the nearest place")
+        feedback.pushInfo(tr("The tolerance is measured {}.").format(measured))
+        results = self.told(made.report, feedback)
+        return {**results, **self.write_outputs(made, parameters, context, feedback)}
+
+    def _model(self, sightbound):
+        """What lies between the samples cannot be learnt from a TIN: nothing, unless it is said."""
+        self.error.other.setdefault("geologic_variation", 0.0)
+        return self.error.model(sightbound)
+
+    def _original(self, sightbound, feedback):
+        if self.mesh:
+            with core_errors("INPUT"):
+                return open_mesh(sightbound, self.mesh, self.vertical_unit, feedback)
+        if self.layer:
+            with core_errors("TIN"):
+                return open_tin(sightbound, self.layer, self.vertical_unit, feedback)
+        with core_errors("FILE"):
+            return open_tin_file(sightbound, self.file, self.vertical_unit, feedback)

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Any TIN in a permission grid: every promise of simplify_tin.h, by brute force.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <random>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "simplify/both_ways.h"
+#include "simplify/height_containment.h"
+#include "simplify/simplify_tin.h"
+#include "support/bodies.h"
+#include "support/distance_oracle.h"
+#include "support/says.h"
+#include "support/tins.h"
+#include "terrain/tin_cleaning.h"
+#include "volume/error_volume.h"
+#include "volume/tin_surface.h"
+
+namespace sightbound {
+namespace {
+
+using namespace testing;
+
+constexpr double kZ = 1.959963984540054;
+
+// Faces cut into four, `times` times.
+Tin finer(Tin tin, int times) {
+  for (; times > 0; --times) {
+    const std::vector<Face> faces = std::move(tin.faces);
+    tin.faces.clear();
+    std::map<std::array<std::int32_t, 2>, std::int32_t> middles;
+    const auto middle = [&](std::int32_t a, std::int32_t b) {
+      const auto [found, made] = middles.try_emplace({std::min(a, b), std::max(a, b)}, 0);
+      if (made) {
+        found->second = static_cast<std::int32_t>(tin.vertices.size());
+        tin.vertices.push_back(0.5 * (tin.vertices[std::size_t(a)] + tin.vertices[std::size_t(b)]));
+      }
+      return found->second;
+    };
+    for (const Face& f : faces) {
+      const std::int32_t a = middle(f[0], f[1]), b = middle(f[1], f[2]), c = middle(f[2], f[0]);
+      for (const Face& part : {Face{f[0], a, c}, Face{f[1], b, a}, Face{f[2], c, b}, Face{a, b, c}})
+        tin.faces.push_back(part);
+    }
+  }
+  return tin;
+}
+
+Tin shaken(Tin tin, unsigned seed, double size) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-size, size);
+  for (Xyz& v : tin.vertices) v = v + Xyz{unit(random), unit(random), unit(random)};
+  return tin;
+}
+
+enum class Ways { kForward, kBoth };
+
+// Distance to the original at most `tolerance`, voxels of that size.
+TinSimplified simplified(const Tin& tin, double tolerance, double voxel,
+                         const TinSimplifyOptions& options = {}, int threads = 1, Ways ways = Ways::kBoth) {
+  TinError error;
+  error.sampling.assign(tin.vertices.size(), std::nextafter(static_cast<float>(tolerance / kZ), 0.0F));
+  error.spacing_m = 1;
+  const auto surface = std::make_shared<TinSurface>(tin, error, Metric::kNormal);
+  VolumeOptions volume;
+  volume.voxel_m = voxel;
+  volume.threads = threads;
+  Progress progress;
+  CoverMasks covers = build_covers(surface, 0.95, volume, progress);
+  GridContainment grid(PermissionGrid(covers.inner, covers.voxel_m, covers.voxel_height_m),
+                       tin.vertices[0] - surface->vertex(0));
+  BothWays both_ways(tin, std::vector<float>(tin.vertices.size(), static_cast<float>(tolerance)), grid);
+  Containment& containment = ways == Ways::kBoth ? static_cast<Containment&>(both_ways) : grid;
+  return simplify_tin(tin, containment, options, progress);
+}
+
+TinSimplified with_nothing_allowed(const Tin& tin, const TinSimplifyOptions& options = {}) {
+  Progress progress;
+  NothingContained nothing;
+  return simplify_tin(tin, nothing, options, progress);
+}
+
+// No face without area, none doubled, no vertex unused.
+void expect_sound(const Tin& tin) {
+  std::set<std::array<std::int32_t, 3>> seen;
+  std::set<std::int32_t> used;
+  for (const Face& f : tin.faces) {
+    const auto t = triangle_of(tin, f);
+    EXPECT_GT(length(cross(t[1] - t[0], t[2] - t[0])), 0);
+    std::array<std::int32_t, 3> sorted = f;
+    std::sort(sorted.begin(), sorted.end());
+    EXPECT_TRUE(seen.insert(sorted).second);
+    used.insert(f.begin(), f.end());
+  }
+  EXPECT_EQ(used.size(), tin.vertices.size());
+}
+
+struct Body {
+  const char* name;
+  Tin tin;
+  double tolerance, voxel;
+};
+
+std::vector<Body> bodies() {
+  return {{"building", shaken(finer(box({0, 0, 0}, {20, 12, 9}), 3), 1, 0.05), 0.6, 0.2},
+          {"arch", shaken(finer(arch(10, 8, 9), 2), 2, 0.03), 0.5, 0.18},
+          {"bridge over ground", shaken(finer(bridge(3), 1), 3, 0.05), 1.5, 0.5},
+          {"ball", finer(rough_ball(4, 10, 0.1), 2), 0.8, 0.25}};
+}
+
+TEST(SimplifyTin, EveryPlaceIsWithinTheTolerance) {
+  for (const Body& body : bodies()) {
+    TinSimplifyOptions options;
+    options.outline_tolerance_m = body.tolerance;
+    const TinSimplified made = simplified(body.tin, body.tolerance, body.voxel, options);
+    EXPECT_LE(furthest(made.tin, body.tin), body.tolerance) << body.name;
+    EXPECT_LE(furthest(body.tin, made.tin, 3), body.tolerance) << body.name;
+    EXPECT_EQ(shape_of(made.tin), shape_of(body.tin)) << body.name;
+    expect_sound(made.tin);
+    EXPECT_EQ(made.faces_before, body.tin.faces.size());
+    EXPECT_LT(made.tin.faces.size(), body.tin.faces.size() / 4) << body.name;
+    RecordProperty(body.name, static_cast<int>(made.tin.faces.size()));
+  }
+}
+
+TEST(SimplifyTin, ABoxKeepsTwelveFacesAndAPlaneTwo) {
+  EXPECT_EQ(with_nothing_allowed(finer(box({0, 0, 0}, {16, 8, 4}), 4)).tin.faces.size(), 12U);
+  const Tin plane = finer(tin_of({{0, 0, 0}, {16, 0, 4}, {16, 8, 4}, {0, 8, 0}}, {{0, 1, 2}, {0, 2, 3}}), 4);
+  EXPECT_EQ(with_nothing_allowed(plane).tin.faces.size(), 2U);
+  EXPECT_EQ(simplified(finer(box({0, 0, 0}, {16, 8, 4}), 3), 0.3, 0.1).tin.faces.size(), 12U);
+}
+
+// The surface of the one lies on that of the other, and back.
+TEST(SimplifyTin, NothingAllowedRemovesOnlyWhatIsCoplanar) {
+  std::mt19937 random(5);
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    // Heights of whole quarters: many plane places, many that are nearly.
+    Tin tin = finer(seed % 2 == 0 ? box({0, 0, 0}, {8, 8, 8}) : arch(6, 8, 4), 2);
+    std::uniform_int_distribution<int> pick(0, 9);
+    for (Xyz& v : tin.vertices) {
+      if (pick(random) == 0) v = v + Xyz{0, 0, pick(random) % 2 == 0 ? 0.25 : 0x1p-40};
+    }
+    const TinSimplified made = with_nothing_allowed(tin);
+    EXPECT_LT(made.tin.faces.size(), tin.faces.size());
+    EXPECT_LE(furthest(made.tin, tin, 4), 1e-13);
+    EXPECT_LE(furthest(tin, made.tin, 2), 1e-13);
+    EXPECT_EQ(shape_of(made.tin), shape_of(tin));
+    for (const Xyz& v : made.tin.vertices)
+      EXPECT_NE(std::find(tin.vertices.begin(), tin.vertices.end(), v), tin.vertices.end());
+  }
+}
+
+Tin rough_ground(int across, unsigned seed, double relief) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(0, relief);
+  Tin tin;
+  for (int r = 0; r <= across; ++r) {
+    for (int c = 0; c <= across; ++c) tin.vertices.push_back({2.0 * c, 2.0 * r, unit(random)});
+  }
+  for (int r = 0; r < across; ++r) {
+    for (int c = 0; c < across; ++c) {
+      const std::int32_t a = r * (across + 1) + c, b = a + 1, d = a + across + 1, e = d + 1;
+      tin.faces.push_back({a, b, e});
+      tin.faces.push_back({a, e, d});
+    }
+  }
+  return tin;
+}
+
+TEST(SimplifyTin, HeightFieldsKeepTheirFootprintAndLookUp) {
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const Tin tin = rough_ground(16, seed, 1.5);
+    TinSimplifyOptions options;
+    options.height_field = true;
+    HeightContainment containment(tin, std::vector<float>(tin.vertices.size(), 1.0F));
+    Progress progress;
+    const TinSimplified made = simplify_tin(tin, containment, options, progress);
+    EXPECT_LT(made.tin.faces.size(), tin.faces.size() / 2);
+    EXPECT_LE(made.largest_deviation_m, 1.0);
+    double area = 0;
+    for (const Face& f : made.tin.faces) {
+      const auto t = triangle_of(made.tin, f);
+      const double up = cross(t[1] - t[0], t[2] - t[0]).z;
+      EXPECT_GT(up, 0);
+      area += up / 2;
+    }
+    EXPECT_NEAR(area, 32 * 32, 1e-9);
+    const std::vector<float>& deviation = made.tin.face_attributes.at(0).values;
+    // Vertically: the height of the original under a place, by looking through all its faces.
+    for (const Face& f : made.tin.faces) {
+      for_places(triangle_of(made.tin, f), 6, [&](const Xyz& p) {
+        for (const Face& g : tin.faces) {
+          const auto t = triangle_of(tin, g);
+          const Xyz n = cross(t[1] - t[0], t[2] - t[0]);
+          std::array<double, 3> weight;
+          for (std::size_t i = 0; i < 3; ++i)
+            weight[i] = cross(t[(i + 2) % 3] - t[(i + 1) % 3], Xyz{p.x, p.y, 0} - t[(i + 1) % 3]).z / n.z;
+          if (*std::min_element(weight.begin(), weight.end()) < 0) continue;
+          EXPECT_LE(std::abs(weight[0] * t[0].z + weight[1] * t[1].z + weight[2] * t[2].z - p.z),
+                    static_cast<double>(deviation[&f - made.tin.faces.data()]));
+        }
+      });
+    }
+  }
+}
+
+// A cone narrower than the tolerance: the plane without it lies near the original everywhere.
+TEST(SimplifyTin, NothingThinVanishes) {
+  Tin tin = finer(rough_ground(8, 3, 0), 2);
+  const auto middle = std::find(tin.vertices.begin(), tin.vertices.end(), Xyz{8, 8, 0});
+  ASSERT_NE(middle, tin.vertices.end());
+  middle->z = 1.5;
+  EXPECT_GT(furthest(tin, simplified(tin, 0.7, 0.1, {}, 1, Ways::kForward).tin, 2), 1.4);
+  const Tin both = simplified(tin, 0.7, 0.1).tin;
+  EXPECT_LE(furthest(tin, both, 4), 0.7);
+  EXPECT_LT(both.faces.size(), 40U);
+}
+
+// Both ways: from the outlines' places to the other outline.
+TEST(SimplifyTin, TheOutlineKeepsToItsToleranceBothWays) {
+  const auto border_of = [](const Tin& tin) {
+    std::map<std::array<std::int32_t, 2>, int> edges;
+    for (const Face& f : tin.faces) {
+      for (std::size_t i = 0; i < 3; ++i)
+        ++edges[{std::min(f[i], f[(i + 1) % 3]), std::max(f[i], f[(i + 1) % 3])}];
+    }
+    std::vector<std::array<Xyz, 2>> border;
+    for (const auto& [e, n] : edges) {
+      if (n == 1) border.push_back({tin.vertices[std::size_t(e[0])], tin.vertices[std::size_t(e[1])]});
+    }
+    return border;
+  };
+  const auto apart = [](const std::vector<std::array<Xyz, 2>>& from,
+                        const std::vector<std::array<Xyz, 2>>& to) {
+    double most = 0;
+    for (const auto& [a, b] : from) {
+      for (int s = 0; s <= 20; ++s) {
+        const Xyz p = a + (s / 20.0) * (b - a);
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& [c, d] : to) {
+          const double t = std::clamp(dot(p - c, d - c) / dot(d - c, d - c), 0.0, 1.0);
+          least = std::min(least, length(c + t * (d - c) - p));
+        }
+        most = std::max(most, least);
+      }
+    }
+    return most;
+  };
+  const Tin tin = shaken(finer(arch(12, 8, 9), 2), 6, 0.08);
+  std::size_t before = 0;
+  for (const double tolerance : {0.0, 0.1, 0.3}) {
+    TinSimplifyOptions options;
+    options.outline_tolerance_m = tolerance;
+    const TinSimplified made = simplified(tin, 0.6, 0.12, options);
+    const auto whole = border_of(tin), left = border_of(made.tin);
+    EXPECT_LE(apart(whole, left), tolerance + 1e-12);
+    EXPECT_LE(apart(left, whole), tolerance + 1e-12);
+    if (before > 0) {
+      EXPECT_LT(left.size(), before);
+    }
+    before = left.size();
+    EXPECT_EQ(left.size() == whole.size(), tolerance == 0);
+  }
+}
+
+TEST(SimplifyTin, KeptVerticesStay) {
+  const Tin tin = shaken(finer(box({0, 0, 0}, {20, 12, 9}), 3), 1, 0.05);
+  TinSimplifyOptions options;
+  options.keep.assign(tin.vertices.size(), 0);
+  for (std::size_t v = 0; v < tin.vertices.size(); v += 11) options.keep[v] = 1;
+  const TinSimplified made = simplified(tin, 0.8, 0.2, options);
+  for (std::size_t v = 0; v < tin.vertices.size(); v += 11)
+    EXPECT_NE(std::find(made.tin.vertices.begin(), made.tin.vertices.end(), tin.vertices[v]),
+              made.tin.vertices.end());
+  options.keep.assign(tin.vertices.size(), 1);
+  EXPECT_EQ(simplified(tin, 0.8, 0.2, options).tin.faces, tin.faces);
+}
+
+TEST(SimplifyTin, WhatIsNotManifoldStays) {
+  // Three walls that meet in one edge, and two cones that touch in a point.
+  Tin walls =
+      tin_of({{0, 0, 0}, {0, 0, 4}, {4, 0, 0}, {4, 0, 4}, {-3, 3, 0}, {-3, 3, 4}, {-3, -3, 0}, {-3, -3, 4}},
+             {{0, 2, 3}, {0, 3, 1}, {0, 4, 5}, {0, 5, 1}, {0, 6, 7}, {0, 7, 1}});
+  walls = finer(walls, 3);
+  TinSimplifyOptions options;
+  options.outline_tolerance_m = 0.3;
+  const TinSimplified made = simplified(walls, 0.3, 0.08, options);
+  EXPECT_GE(made.fixed_vertices, 9U);
+  EXPECT_EQ(shape_of(made.tin).euler, shape_of(walls).euler);
+  EXPECT_EQ(shape_of(made.tin).non_manifold, 8U);
+  EXPECT_LT(made.tin.faces.size(), walls.faces.size() / 3);
+  EXPECT_LE(furthest(made.tin, walls), 0.3);
+}
+
+TEST(SimplifyTin, StopsAtTheTarget) {
+  const Tin tin = finer(rough_ball(4, 10, 0.1), 2);
+  for (const std::int64_t target : {1000, 400}) {
+    TinSimplifyOptions options;
+    options.target_faces = target;
+    const std::size_t faces = simplified(tin, 0.8, 0.25, options).tin.faces.size();
+    EXPECT_LE(std::abs(static_cast<std::int64_t>(faces) - target), 2);
+    EXPECT_GE(faces + 1, static_cast<std::size_t>(target));
+  }
+}
+
+TEST(SimplifyTin, SameBytesForAnyNumberOfThreads) {
+  for (const Body& body : bodies()) {
+    const TinSimplified one = simplified(body.tin, body.tolerance, body.voxel, {}, 1),
+                        two = simplified(body.tin, body.tolerance, body.voxel, {}, 2);
+    EXPECT_EQ(one.tin.faces, two.tin.faces);
+    EXPECT_EQ(one.tin.vertices, two.tin.vertices);
+  }
+}
+
+// Soups of triangles: refused, or every promise holds.
+TEST(SimplifyTin, AnySoupIsRefusedOrSimplifiedSoundly) {
+  std::size_t refused = 0, done = 0;
+  for (unsigned seed = 0; seed < 150; ++seed) {
+    std::mt19937 random(seed);
+    const auto pick = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
+    Tin soup;
+    const int vertices = 4 + pick(30), faces = 1 + pick(60);
+    for (int v = 0; v < vertices; ++v) {  // on a coarse lattice, so that much coincides and lies in planes
+      soup.vertices.push_back({double(pick(4)), double(pick(4)), double(pick(3))});
+      if (pick(3) == 0) soup.vertices.back().z += 0.01 * pick(100);
+    }
+    if (pick(10) == 0)
+      soup.vertices[std::size_t(pick(vertices))].y = std::numeric_limits<double>::quiet_NaN();
+    for (int f = 0; f < faces; ++f) soup.faces.push_back({pick(vertices), pick(vertices), pick(vertices)});
+    Tin tin;
+    try {
+      tin = clean(soup, "The TIN");
+    } catch (const InvalidInput&) {
+      ++refused;
+      continue;
+    }
+    TinSimplifyOptions options;
+    options.outline_tolerance_m = 0.1 * pick(3);
+    const TinSimplified made = simplified(tin, 0.5, 0.15, options);
+    EXPECT_LE(furthest(made.tin, tin, 5), 0.5) << seed;
+    EXPECT_LE(furthest(tin, made.tin, 5), 0.5) << seed;
+    EXPECT_EQ(shape_of(made.tin).euler, shape_of(tin).euler) << seed;
+    EXPECT_EQ(shape_of(made.tin).components, shape_of(tin).components) << seed;
+    expect_sound(made.tin);
+    ++done;
+  }
+  EXPECT_GT(refused, 5U);
+  EXPECT_GT(done, 100U);
+}
+
+TEST(SimplifyTin, RefusesWhatMakesNoSense) {
+  const Tin tin = triangle();
+  TinSimplifyOptions options;
+  options.keep.assign(2, 0);
+  EXPECT_THROW(with_nothing_allowed(tin, options), InvalidInput);
+  options = {};
+  options.outline_tolerance_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(with_nothing_allowed(tin, options), InvalidInput);
+  options = {};
+  options.target_faces = -1;
+  EXPECT_THROW(with_nothing_allowed(tin, options), InvalidInput);
+  EXPECT_THROW(with_nothing_allowed(Tin{}), InvalidInput);
+}
+
+TEST(SimplifyTin, IsCancelled) {
+  const Tin tin = finer(rough_ball(4, 10, 0.1), 4);
+  Progress progress([](double) { return false; });
+  NothingContained nothing;
+  EXPECT_THROW(simplify_tin(tin, nothing, {}, progress), Cancelled);
+}
+
+}  // namespace
+}  // namespace sightbound

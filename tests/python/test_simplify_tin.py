@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""sb.simplify: any TIN within its tolerance, against distances by brute force; what the caller gets and is told."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sightbound as sb
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
+import tins  # noqa: E402
+
+
+def building(cells=24):
+    """Walls and a gable roof on ground with bumps, as one sheet that is no height field."""
+    rng = np.random.default_rng(1)
+    x = np.array([0, 5, 10, 15, 15, 15, 14, 20, 26, 25, 25, 25, 30, 35, 40.0])
+    z = np.array([0, 0, 0, 0, 3, 6, 6, 10, 6, 6, 3, 0, 0, 0, 0.0])
+    along = np.linspace(0, 1, len(x))
+    u = np.linspace(0, 1, 57)
+    return tins.sheet(cells, 56, lambda s, v: (np.interp(s, along, x), 40 * v, np.interp(s, along, z) + rng.normal(0, 0.02, s.shape)))
+
+
+def bodies():
+    rng = np.random.default_rng
+    return {"arch": tins.arch(rng(2)), "cave": tins.cave(rng(3)), "bridge": tins.bridge(rng(4)), "building": building()}
+
+
+@pytest.fixture(scope="module", params=["arch", "cave", "bridge", "building"])
+def body(request):
+    return bodies()[request.param]
+
+
+def distances(places, vertices, faces):
+    """Of places from triangles, by all of them; no code of the product. Closest place on the plane, else on the edges."""
+    best = np.full(len(places), np.inf)
+    for a, b, c in vertices[faces]:
+        normal = np.cross(b - a, c - a)
+        normal = normal / np.linalg.norm(normal)
+        height = (places - a) @ normal
+        foot = places - height[:, None] * normal
+        inside = np.ones(len(places), bool)
+        found = np.full(len(places), np.inf)
+        for p, q in ((a, b), (b, c), (c, a)):
+            inside &= np.cross(q - p, foot - p) @ normal >= 0
+            t = np.clip((places - p) @ (q - p) / ((q - p) @ (q - p)), 0, 1)
+            found = np.minimum(found, np.linalg.norm(p + t[:, None] * (q - p) - places, axis=1))
+        best = np.minimum(best, np.where(inside, np.abs(height), found))
+    return best
+
+
+def places_on(vertices, faces, steps=6):
+    """A net over every triangle: corners, edges, interior."""
+    weights = np.array([(i, j, steps - i - j) for i in range(steps + 1) for j in range(steps + 1 - i)]) / steps
+    return np.einsum("wk,fkx->fwx", weights, vertices[faces]).reshape(-1, 3)
+
+
+def shape(faces):
+    """Euler characteristic, and how many edges have one face, and three or more."""
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    edges, count = np.unique(edges, axis=0, return_counts=True)
+    return len(np.unique(faces)) - len(edges) + len(faces), int((count > 2).sum())
+
+
+def outlines(faces):
+    """Loops of border."""
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    edges, count = np.unique(edges, axis=0, return_counts=True)
+    parent = {}
+    def root(v):
+        while parent.setdefault(v, v) != v:
+            v = parent[v]
+        return v
+    for a, b in edges[count == 1]:
+        parent[root(int(a))] = root(int(b))
+    return sum(v == root(v) for v in parent)
+
+
+def test_every_place_is_within_the_tolerance_and_the_topology_stays(body):
+    original = sb.Tin(*body)
+    assert not original.is_height_field
+    made = sb.simplify(original, tolerance=0.5)
+    assert made.report["method"] == "distance" and made.report["largest_tolerance"] == 0.5
+    far = distances(places_on(made.vertices, made.faces), original.vertices, original.faces)
+    assert far.max() <= 0.5
+    assert len(made.faces) == made.report["faces_after"] < 0.5 * made.report["faces_before"] == 0.5 * len(original.faces)
+    assert shape(made.faces) == shape(original.faces) and outlines(made.faces) == outlines(original.faces)
+    found = sb.verify(original, made, 0.5, resolution=0.02).report
+    assert found["degenerate"]["count"] == 0
+
+
+def test_an_error_model_is_a_tolerance_at_the_confidence(body):
+    original = sb.Tin(*body)
+    model = sb.ErrorModel(vertical_rmse=0.2, horizontal_rmse=0.1, geologic_variation=0)
+    made = sb.simplify(original, error_model=model, confidence=0.9)
+    assert made.report["largest_tolerance"] <= 1.645 * 0.3 and '"vertical_rmse"' in made.report["error_model"]
+    far = distances(places_on(made.vertices, made.faces), original.vertices, original.faces)
+    assert far.max() <= made.report["largest_tolerance"]
+    assert len(made.faces) < len(original.faces)
+    surer = sb.simplify(original, error_model=model, confidence=0.999)
+    assert len(surer.faces) <= len(made.faces)
+
+
+@pytest.fixture(scope="module")
+def points():
+    rng = np.random.default_rng(7)
+    xy = np.round(rng.uniform(0, 300, (1500, 2)), 2)
+    z = 20 * np.sin(xy[:, 0] / 40) * np.cos(xy[:, 1] / 50) + rng.normal(0, 0.3, len(xy))
+    return np.column_stack([xy + [500000, 5000000], z])
+
+
+def test_any_height_field_uses_the_whole_tolerance(points):
+    original = sb.Tin.from_points(points)
+    made = sb.simplify(original, tolerance=1.5)
+    found = sb.verify(original, made, 1.5).report
+    assert found["method"] == "vertical" and found["within_tolerance"] and found["well_formed"]
+    assert 1.4 < found["largest_deviation"]["bound"] <= 1.5
+    assert found["uncovered"]["m2"] < 1e-3 and found["surplus"]["m2"] < 1e-3
+    assert made.report["voxel"] == 0 and len(made.faces) < 0.25 * len(original.faces)
+
+
+def test_the_outline_of_a_height_field_may_move_in_plan(points):
+    original = sb.Tin.from_points(points)
+    still, free = (sb.simplify(original, tolerance=1.5, border_tolerance=b) for b in (0.0, 3.0))
+    outline = lambda tin: sum(tin.faces.size for _ in [0]) - 2 * (tin.faces.size - len(edges_of(tin.faces)))
+    assert outline(free) <= outline(still)
+    found = sb.verify(original, free, 1.5).report
+    assert found["within_tolerance"] and found["uncovered"]["m2"] <= 3.0 * 1200
+
+
+def edges_of(faces):
+    return np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
+
+
+def test_a_dem_is_simplified_nearly_as_far_as_by_dem_to_tin():
+    y, x = np.mgrid[:61, :61]
+    heights = (20 * np.sin(x / 9.0) * np.cos(y / 7.0) + np.random.default_rng(3).normal(0, 0.4, x.shape)).astype(np.float32)
+    dem = sb.Dem(heights, (0, 10, 0, 610, 0, -10))
+    full = sb.Tin.from_dem(dem)
+    made, best = sb.simplify(full, tolerance=1.0), sb.dem_to_tin(dem, tolerance=1.0)
+    assert len(made.faces) < 1.6 * len(best.faces)
+    assert sb.verify(dem, made, 1.0).report["within_tolerance"]
+
+
+def test_a_tolerance_of_0_removes_what_is_coplanar():
+    vertices, faces = tins.sheet(8, 8, lambda u, v: (8 * u, 8 * v, 2 * u + v))
+    assert len(sb.simplify(sb.Tin(vertices, faces), tolerance=0).faces) == 2
+    vertices[40, 2] += 1e-9
+    assert 2 < len(sb.simplify(sb.Tin(vertices, faces), tolerance=0).faces) < 20
+
+
+def test_targets_and_what_is_kept(body):
+    original = sb.Tin(*body)
+    keep = np.zeros(len(original.vertices))
+    keep[::13] = 1
+    target = int(0.8 * len(original.faces))
+    made = sb.simplify(original, tolerance=0.5, keep=keep, target_faces=target)
+    assert abs(len(made.faces) - target) <= 2
+    there = {tuple(v) for v in made.vertices.tolist()}
+    assert all(tuple(v) in there for v in original.vertices[::13].tolist())
+
+
+def test_same_bytes_for_any_number_of_threads(body, tmp_path):
+    files = []
+    for threads in (1, 2):
+        made = sb.simplify(sb.Tin(*body), tolerance=0.5, threads=threads)
+        made.write(tmp_path / f"{threads}.ply")
+        files.append((tmp_path / f"{threads}.ply").read_bytes())
+    assert files[0] == files[1]
+
+
+def test_quads_become_triangles():
+    vertices = [(x, y, 0.0) for y in range(5) for x in range(5)]
+    quads = [(5 * r + c, 5 * r + c + 1, 5 * r + c + 6, 5 * r + c + 5) for r in range(4) for c in range(4)]
+    made = sb.simplify(sb.Tin(vertices, quads), tolerance=0.1)
+    assert made.report["faces_before"] == 32 and len(made.faces) == 2
+
+
+@pytest.mark.parametrize("wrong, message", [
+    ({}, "give either tolerance"),
+    ({"tolerance": 1, "error_model": sb.ErrorModel(vertical_rmse=1, geologic_variation=0)}, "give either tolerance"),
+    ({"tolerance": -1}, "tolerance is -1"),
+    ({"tolerance": float("nan")}, "tolerance"),
+    ({"tolerance": 1, "border_tolerance": -2}, "border_tolerance is -2"),
+    ({"tolerance": 1, "target_faces": 0}, "target_faces"),
+    ({"tolerance": 1, "keep": [1, 0]}, "keep has shape"),
+    ({"tolerance": 1, "voxel_size": 0}, "voxel_size"),
+    ({"error_model": sb.ErrorModel(vertical_rmse=1, geologic_variation=0), "confidence": 1.5}, "confidence"),
+    ({"error_model": sb.ErrorModel()}, "geologic_variation"),
+])
+def test_what_is_wrong_is_named(wrong, message):
+    with pytest.raises(ValueError, match=message):
+        sb.simplify(sb.Tin(*tins.cave(np.random.default_rng(3))), **wrong)
+
+
+def test_too_much_for_the_memory_is_refused_with_advice():
+    with pytest.raises(MemoryError, match="voxel"):
+        sb.simplify(sb.Tin(*tins.cave(np.random.default_rng(3))), tolerance=0.5, voxel_size=0.01, memory_budget=50e6)
+
+
+def test_it_is_cancelled_and_tells_its_progress(body):
+    told = []
+    sb.simplify(sb.Tin(*body), tolerance=0.5, progress=lambda f: told.append(f))
+    assert told == sorted(told) and told[-1] == 1.0
+    with pytest.raises(sb.Cancelled):
+        sb.simplify(sb.Tin(*body), tolerance=0.5, progress=lambda f: f < 0.3)

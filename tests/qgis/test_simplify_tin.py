@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Simplify TIN through processing.run: meshes, layers and files of any shape, numbers, and what is refused."""
+
+import json
+import math
+
+import numpy
+import pytest
+import scenes
+from osgeo import ogr
+from qgis.core import (
+    QgsMeshLayer,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingModelAlgorithm,
+    QgsProcessingModelChildAlgorithm,
+    QgsProcessingModelChildParameterSource,
+    QgsProcessingUtils,
+    QgsProject,
+)
+
+
+def tunnel(rows=24, cols=30):
+    """A half pipe that overhangs at its feet: no height field."""
+    angle = numpy.linspace(-0.3, math.pi + 0.3, cols + 1)
+    rough = numpy.random.default_rng(1).normal(0, 0.02, (rows + 1, cols + 1))
+    vertices = [
+        (scenes.WEST + 20 - 9 * math.cos(a), scenes.NORTH - 60 + 1.5 * r, 105 + 9 * math.sin(a) + rough[r, c])
+        for r in range(rows + 1)
+        for c, a in enumerate(angle)
+    ]
+    at = lambda r, c: r * (cols + 1) + c
+    return vertices, [(at(r, c), at(r, c + 1), at(r + 1, c + 1), at(r + 1, c)) for r in range(rows) for c in range(cols)]
+
+
+@pytest.fixture
+def mesh(tmp_path):
+    import sightbound
+
+    path = str(tmp_path / "tunnel.ply")
+    sightbound.Tin(*tunnel(), f"EPSG:{scenes.UTM}").write(path)
+    return path
+
+
+def simplify(run, mesh, folder, **more):
+    return run("simplifytin", **{"INPUT": mesh, "TOLERANCE": 0.4, "OUTPUT": str(folder / "tin.ply"), **more})
+
+
+def test_mesh_polygons_and_numbers(run, mesh, tmp_path):
+    polygons, log = str(tmp_path / "tin.gpkg"), scenes.Log()
+    found = simplify(run, mesh, tmp_path, OUTPUT_POLYGONS=polygons, feedback=log)
+    assert found["TRIANGLES"] < 0.5 * found["TRIANGLES_BEFORE"] == 0.5 * 2 * 24 * 30
+    assert found["LARGEST_TOLERANCE"] == found["BORDER_TOLERANCE_USED"] == 0.4 and 0 < found["VOXEL_USED"] < 0.4
+    made = QgsMeshLayer(found["OUTPUT"], "tin", "mdal")
+    assert made.isValid() and made.crs().authid() == "EPSG:32633" and made.meshFaceCount() == found["TRIANGLES"]
+    assert len(scenes.rows_of(polygons)) == found["TRIANGLES"]
+    assert any("distance to the nearest place" in line for line in log.infos) and log.warnings == []
+    verified = run("verifytin", MESH=mesh, SIMPLIFIED=found["OUTPUT"], TOLERANCE=0.4)
+    assert verified["WITHIN_TOLERANCE"] and verified["DEGENERATE"] == 0
+
+
+def test_an_accuracy_is_a_tolerance_at_the_confidence(run, mesh, tmp_path):
+    error = {"TOLERANCE": None, "VERTICAL_ACCURACY": 0.2, "HORIZONTAL_ACCURACY": 0.2}
+    found = simplify(run, mesh, tmp_path, **error)
+    assert 0.39 < found["LARGEST_TOLERANCE"] <= 1.96 * 0.2 * math.sqrt(2) + 1e-3
+    assert json.loads(found["ERROR_MODEL_USED"])["vertical_rmse"] == 0.2
+    assert simplify(run, mesh, tmp_path, CONFIDENCE=0.999, **error)["TRIANGLES"] < found["TRIANGLES"]
+
+
+def test_layers_and_files_are_taken_too(run, mesh, tmp_path):
+    import sightbound
+
+    layer, file = str(tmp_path / "tunnel.gpkg"), str(tmp_path / "tunnel.obj")
+    sightbound.read_tin(mesh).write(layer)
+    sightbound.read_tin(mesh).write(file)
+    expected = simplify(run, mesh, tmp_path)["TRIANGLES"]
+    for source in ({"TIN": layer}, {"FILE": file}, {"FILE": mesh}):
+        found = simplify(run, None, tmp_path, **source)
+        assert abs(found["TRIANGLES"] - expected) <= 0.2 * expected, source
+
+
+def test_quads_are_triangulated_and_it_is_said(run, tmp_path):
+    vertices, quads = tunnel()
+    lines = ["MESH2D"] + [f"E4Q {n} {' '.join(str(v + 1) for v in quad)} 1" for n, quad in enumerate(quads, 1)]
+    lines += [f"ND {n} {x} {y} {z}" for n, (x, y, z) in enumerate(vertices, 1)]
+    path, log = tmp_path / "quads.2dm", scenes.Log()
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+    found = simplify(run, str(path), tmp_path, feedback=log)
+    assert found["TRIANGLES_BEFORE"] == 2 * len(quads)
+    assert any("triang" in line for line in log.infos + log.warnings)
+
+
+def test_height_fields_lose_nothing_to_voxels(run, dem, tmp_path):
+    import sightbound
+
+    path = str(tmp_path / "full.ply")
+    sightbound.Tin.from_dem(sightbound.read_dem(dem)).write(path)
+    found = simplify(run, path, tmp_path, TOLERANCE=1.0)
+    assert found["VOXEL_USED"] == 0 and found["TRIANGLES"] < 0.5 * found["TRIANGLES_BEFORE"]
+    verified = run("verifytin", INPUT=dem, SIMPLIFIED=found["OUTPUT"], TOLERANCE=1.0)
+    assert verified["WITHIN_TOLERANCE"] and verified["WELL_FORMED"] and 0.9 < verified["LARGEST_DEVIATION"] <= 1.0
+
+
+def test_targets_borders_and_areas_to_keep(run, mesh, tmp_path):
+    plain = simplify(run, mesh, tmp_path)["TRIANGLES"]
+    assert abs(simplify(run, mesh, tmp_path, TARGET_TRIANGLES=900)["TRIANGLES"] - 900) <= 2
+    assert simplify(run, mesh, tmp_path, BORDER_TOLERANCE=0.0)["TRIANGLES"] > plain
+    assert simplify(run, mesh, tmp_path, VOXEL=0.2)["TRIANGLES"] > plain
+    areas = square(tmp_path / "keep.gpkg", scenes.WEST + 8, scenes.NORTH - 45, 10)
+    assert simplify(run, mesh, tmp_path, KEEP=areas)["TRIANGLES"] > 1.2 * plain
+
+
+def square(path, x, y, side):
+    source = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
+    layer = source.CreateLayer("keep", scenes.reference(scenes.UTM), ogr.wkbPolygon)
+    feature = ogr.Feature(layer.GetLayerDefn())
+    corners = [(x, y), (x + side, y), (x + side, y + side), (x, y + side), (x, y)]
+    ring = ", ".join(f"{a} {b}" for a, b in corners)
+    feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POLYGON (({ring}))"))
+    layer.CreateFeature(feature)
+    source = None
+    return str(path)
+
+
+def test_the_mesh_is_loaded_with_its_edges(provider, mesh, tmp_path, log):
+    context, project = QgsProcessingContext(), QgsProject()
+    context.setProject(project)
+    parameters = {"INPUT": mesh, "TOLERANCE": 0.4, "OUTPUT": str(tmp_path / "tin.ply")}
+    results, done = provider.algorithm("simplifytin").create().run(parameters, context, log)
+    assert done, log.errors
+    details = context.layersToLoadOnCompletion()[results["OUTPUT"]]
+    layer = QgsProcessingUtils.mapLayerFromString(results["OUTPUT"], context, True, details.layerTypeHint)
+    details.postProcessor().postProcessLayer(layer, context, log)
+    assert layer.rendererSettings().nativeMeshSettings().isEnabled()
+
+
+@pytest.mark.parametrize("wrong, message", [
+    ({"TOLERANCE": None}, "TOLERANCE: say how far"),
+    ({"VERTICAL_ACCURACY": 1.0}, "TOLERANCE: say how far"),
+    ({"TOLERANCE": None, "VERTICAL_ACCURACY": 1.0, "CONFIDENCE": 1.0}, "CONFIDENCE"),
+    ({"TOLERANCE": None, "VERTICAL_ACCURACY": 1.0, "GEOLOGIC_RASTER": "dem"}, "GEOLOGIC_VARIATION|GEOLOGIC_RASTER"),
+    ({"INPUT": None}, "INPUT: give a mesh"),
+    ({"FILE": "missing.ply"}, "INPUT: give a mesh"),
+    ({"INPUT": None, "FILE": "/nowhere.ply"}, "FILE: there is no file"),
+    ({"INPUT": "dem"}, "INPUT"),
+    ({"KEEP": "far"}, "KEEP: no vertex lies"),
+    ({"VOXEL": 0.002}, "VOXEL"),
+    ({"OUTPUT": "/nowhere/tin.ply"}, "OUTPUT"),
+    ({"OUTPUT": "tin.xyz"}, "OUTPUT"),
+])
+def test_what_is_wrong_is_named(run, mesh, dem, tmp_path, wrong, message):
+    stand_ins = {"dem": dem, "far": lambda: square(tmp_path / "far.gpkg", scenes.WEST + 9000, scenes.NORTH, 10)}
+    wrong = {name: stand_ins.get(value, value) for name, value in wrong.items()}
+    wrong = {name: value() if callable(value) else value for name, value in wrong.items()}
+    if wrong.get("OUTPUT") == "tin.xyz":
+        wrong["OUTPUT"] = str(tmp_path / "tin.xyz")
+    with pytest.raises(QgsProcessingException, match=message):
+        simplify(run, mesh, tmp_path, **wrong)
+    assert list(tmp_path.glob("tin.*")) == []
+
+
+def test_cancelling_leaves_nothing(run, mesh, tmp_path):
+    log = scenes.Log(cancel_at=20)
+    found = simplify(run, mesh, tmp_path, feedback=log)
+    assert "OUTPUT" not in found or found == {} or not (tmp_path / "tin.ply").exists()
+    assert not (tmp_path / "tin.ply").exists()
+
+
+def test_it_works_inside_a_model(mesh, tmp_path):
+    source = QgsProcessingModelChildParameterSource
+    model = QgsProcessingModelAlgorithm("One step", "tests", "tests")
+    child = QgsProcessingModelChildAlgorithm("sightbound:simplifytin")
+    child.setChildId("simple")
+    out = str(tmp_path / "tin.ply")
+    for name, value in {"INPUT": mesh, "TOLERANCE": 0.4, "CONFIDENCE": 0.95, "OUTPUT": out}.items():
+        child.addParameterSources(name, [source.fromStaticValue(value)])
+    model.addChildAlgorithm(child)
+    assert model.validate() == (True, [])
+    _, done = model.run({}, QgsProcessingContext(), scenes.Log())
+    assert done and QgsMeshLayer(out, "tin", "mdal").meshFaceCount() > 0
