@@ -250,30 +250,31 @@ bool TinDecimation::make_if_allowed(Collapse c) {
   return true;
 }
 
-// All faces around what goes lie in the planes of the faces at the edge: one, or two that meet in a straight
-// line along it. Faces made have the sense of those they replace (well_shaped), so they cover the same
-// places.
+// All faces around what goes lie in the planes of the faces at the edge and look the same way: one plane, or
+// two that meet in a straight line along the edge. Faces made have the sense of those they replace
+// (well_shaped), so they cover the same places. (Of faces folded back on one another some would vanish.)
 bool TinDecimation::same_surface(const Collapse& c) const {
   const auto in_plane_of = [this](std::int32_t face, std::int32_t plane) {
     const std::array<Xyz, 3> p = corners(face), q = corners(plane);
-    return std::all_of(p.begin(), p.end(), [&](const Xyz& at) { return in_one_plane(q[0], q[1], q[2], at); });
+    return dot(normal_of(p), normal_of(q)) > 0 &&
+           std::all_of(p.begin(), p.end(), [&](const Xyz& at) { return in_one_plane(q[0], q[1], q[2], at); });
   };
-  const auto& around = c.gone == a_ ? star_.a : star_.b;
-  const auto in = [&](std::size_t plane) {
-    return std::all_of(around.begin(), around.end(),
-                       [&](std::int32_t f) { return in_plane_of(f, star_.both[plane]); });
-  };
-  if (in(0)) {
-    // The outline must be straight there.
+  // Every face around, those at the edge too, is in the plane of one of these.
+  std::vector<std::int32_t> around = c.gone == a_ ? star_.a : star_.b;
+  around.insert(around.end(), star_.both.begin(), star_.both.end());
+  const std::int32_t first = star_.both.front(), second = star_.both.back();
+  const auto in_first = [&](std::int32_t f) { return in_plane_of(f, first); };
+  if (std::all_of(around.begin(), around.end(), in_first)) {
     if (outline_.kind(c.gone) == TinVertexKind::kInside) return true;
-    const Xyz &from = mesh_.place(c.gone), &to = mesh_.place(c.kept);
-    const auto other = outline_.other_neighbour(c.gone, c.kept);
-    return on_one_line(mesh_.place(other), from, to);
+    const std::int32_t other = outline_.other_neighbour(c.gone, c.kept);  // the outline must be straight
+    return on_one_line(mesh_.place(other), mesh_.place(c.gone), mesh_.place(c.kept));
   }
-  if (star_.both.size() < 2) return false;
-  return std::all_of(around.begin(), around.end(), [&](std::int32_t f) {
-    return in_plane_of(f, star_.both[0]) || in_plane_of(f, star_.both[1]);
-  });
+  const std::array<Xyz, 3> p = corners(first), q = corners(second);
+  const bool folded =
+      std::all_of(q.begin(), q.end(), [&](const Xyz& at) { return in_one_plane(p[0], p[1], p[2], at); });
+  return first != second && !folded && std::all_of(around.begin(), around.end(), [&](std::int32_t f) {
+           return in_first(f) || in_plane_of(f, second);
+         });
 }
 
 void TinDecimation::make(const Collapse& c) {

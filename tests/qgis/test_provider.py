@@ -128,6 +128,8 @@ def test_dialog_hands_over_what_the_algorithm_accepts(algorithm, dem, observers,
     given |= {"SIMPLIFIED_TIN": observers, "TOLERANCE": 1.0}
     if algorithm.parameterDefinition("INPUT").type() == "file":
         given["INPUT"] = file
+    if algorithm.parameterDefinition("INPUT").type() == "mesh":
+        given = {"TIN": observers, "TOLERANCE": 1.0}
     dialog.setParameters(
         {name: value for name, value in given.items() if algorithm.parameterDefinition(name)}
     )

@@ -157,6 +157,16 @@ TEST(SimplifyTin, NothingAllowedRemovesOnlyWhatIsCoplanar) {
   }
 }
 
+// Three faces in one plane around a vertex, one of them folded back under the others: without the vertex what
+// it reaches beyond them would vanish.
+TEST(SimplifyTin, WhatIsFoldedInItsPlaneStays) {
+  const Tin tin = tin_of({{3, 0, 0}, {3, 2, 0}, {2, 2, 0}, {2, 1, 0}, {1, 5, 2}, {5, 1, 2}},
+                         {{0, 1, 2}, {0, 2, 3}, {1, 3, 2}, {4, 3, 1}, {5, 1, 0}});
+  const Tin made = with_nothing_allowed(tin).tin;
+  EXPECT_LE(furthest(tin, made, 6), 1e-13);
+  EXPECT_LE(furthest(made, tin, 6), 1e-13);
+}
+
 Tin rough_ground(int across, unsigned seed, double relief) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, relief);
@@ -346,6 +356,9 @@ TEST(SimplifyTin, AnySoupIsRefusedOrSimplifiedSoundly) {
     const TinSimplified made = simplified(tin, 0.5, 0.15, options);
     EXPECT_LE(furthest(made.tin, tin, 5), 0.5) << seed;
     EXPECT_LE(furthest(tin, made.tin, 5), 0.5) << seed;
+    const Tin same = with_nothing_allowed(tin).tin;
+    EXPECT_LE(furthest(same, tin, 5), 1e-13) << seed;
+    EXPECT_LE(furthest(tin, same, 5), 1e-13) << seed;
     EXPECT_EQ(shape_of(made.tin).euler, shape_of(tin).euler) << seed;
     EXPECT_EQ(shape_of(made.tin).components, shape_of(tin).components) << seed;
     expect_sound(made.tin);
