@@ -43,8 +43,8 @@ def clearances(tin, shape, eye, eye_height, target_height):
 
 @pytest.mark.parametrize("z, sigma, tolerance, target_height, bites", [
     (terrains.fractal((24, 26), 3), 0.2, 6.0, 1.0, True),
-    (terrains.fractal((26, 24), 12), 0.3, 12.0, 4.0, False),
-    (terrains.ridges((26, 24)), 0.8, 10.0, 2.0, True),
+    (terrains.fractal((26, 24), 12), 0.3, 12.0, 4.0, True),
+    (terrains.ridges((26, 24)), 0.8, 10.0, 2.0, False),
 ], ids=["fractal", "fractal, tall targets", "walls"])
 def test_views_stay(z, sigma, tolerance, target_height, bites):
     z = np.float32(z)
