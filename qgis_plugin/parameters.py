@@ -190,6 +190,14 @@ def observers_block():
     return [
         points("OBSERVERS", tr("Observers (points; or one point below)"), optional=True),
         QgsProcessingParameterPoint("OBSERVER", tr("One observer"), None, True),
+        *height_block(),
+        varying(metres("MAX_DISTANCE", tr("Maximum distance (empty: the whole DEM)")), "OBSERVERS"),
+    ]
+
+
+def height_block():
+    """Of eyes and targets, over the features of OBSERVERS."""
+    return [
         varying(
             number(
                 "OBSERVER_HEIGHT",
@@ -203,7 +211,6 @@ def observers_block():
             number("TARGET_HEIGHT", tr("Target height in metres"), default("target_height"), optional=False),
             "OBSERVERS",
         ),
-        varying(metres("MAX_DISTANCE", tr("Maximum distance (empty: the whole DEM)")), "OBSERVERS"),
     ]
 
 

@@ -6,6 +6,7 @@ from qgis.core import QgsProcessingParameterBoolean
 from .. import parameters as blocks
 from ..error_block import check_error_block, read_error_block
 from ..feedback import Progress
+from ..observers import HEIGHTS, read_points
 from ..places_on_dem import distances_from, places, read_places, samples_in
 from ..rasters import open_dem, read_extent, read_raster
 from ..text import tr
@@ -44,6 +45,10 @@ class DemToTin(TinMaker):
                 blocks.advanced(places("FOCUS", tr("Area of focus: the tolerance grows with the distance from it"))),
                 blocks.advanced(growth),
                 blocks.advanced(places("KEEP", tr("Places to keep at full resolution"))),
+                blocks.advanced(blocks.points("OBSERVERS", tr("Observers whose view must stay"), optional=True)),
+            ]
+            + [blocks.advanced(height) for height in blocks.height_block()]
+            + [
                 blocks.advanced(border),
                 blocks.advanced(faces),
                 blocks.advanced(size),
@@ -57,10 +62,13 @@ class DemToTin(TinMaker):
 
     def contradiction(self, parameters, context):
         errors = ("VERTICAL_ACCURACY", "ERROR_RASTER", "ERROR_MODEL")
+        views = given(parameters, "OBSERVERS")
+        if views and (not given(parameters, "TOLERANCE") or given(parameters, "FOCUS")):
+            return tr("TOLERANCE: give metres where the OBSERVERS see nothing, and no FOCUS.")
         said = [name for name in ("TOLERANCE", "TOLERANCE_RASTER") if given(parameters, name)]
         if len(said) == 2:
             return tr("TOLERANCE_RASTER: TOLERANCE says the same thing; give only one of them.")
-        if said and any(given(parameters, name) for name in errors):
+        if said and not views and any(given(parameters, name) for name in errors):
             return tr("{}: the accuracy of the heights says the same thing; give only one of them.").format(said[0])
         if not said and not any(given(parameters, name) for name in errors):
             return tr("TOLERANCE: say how far the TIN may be from the elevation model, here or as VERTICAL_ACCURACY.")
@@ -83,16 +91,19 @@ class DemToTin(TinMaker):
             read_places(self, parameters, name, context, feedback, self.dem) for name in ("KEEP", "FOCUS")
         )
         self.growth = number_or_none(self, parameters, "FOCUS_GROWTH", context)
+        self.observers = []
+        if given(parameters, "OBSERVERS"):
+            self.observers, _ = read_points(
+                self, parameters, "OBSERVERS", context, feedback, self.dem, HEIGHTS, {}, None
+            )
 
     def compute(self, sightbound, parameters, context, feedback):
         faces = number_or_none(self, parameters, "TARGET_TRIANGLES", context)
         megabytes = number_or_none(self, parameters, "TARGET_SIZE", context)
-        tolerance = self.tolerance
-        if self.focus:
-            tolerance = tolerance + self.growth / 1000.0 * distances_from(self.focus, self.dem, "FOCUS")
+        dem = open_dem(sightbound, self.dem, self.vertical_unit, feedback)
         tin = sightbound.dem_to_tin(
-            open_dem(sightbound, self.dem, self.vertical_unit, feedback),
-            tolerance=tolerance,
+            dem,
+            tolerance=self._tolerance(sightbound, dem, parameters, context, feedback),
             error_model=self.error.model(sightbound) if self.tolerance is None else None,
             confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
             extent=self.extent,
@@ -102,10 +113,31 @@ class DemToTin(TinMaker):
             target_bytes=None if megabytes is None else megabytes * 1e6,
             target_ending=self._ending(parameters, context),
             threads=self.threads(parameters, context),
-            progress=Progress(feedback, 0.0, 90.0),
+            progress=Progress(feedback, 30.0 if self.observers else 0.0, 90.0),
         )
         results = self.told(tin.report, feedback)
         return {**results, **self.write_outputs(tin, parameters, context, feedback)}
+
+    def _tolerance(self, sightbound, dem, parameters, context, feedback):
+        if self.focus:
+            return self.tolerance + self.growth / 1000.0 * distances_from(self.focus, self.dem, "FOCUS")
+        if not self.observers:
+            return self.tolerance
+        tolerance, report = sightbound.visibility_tolerance(
+            dem,
+            [(place.x, place.y) for place in self.observers],
+            self.tolerance,
+            observer_height=[place.values["OBSERVER_HEIGHT"] for place in self.observers],
+            target_height=[place.values["TARGET_HEIGHT"] for place in self.observers],
+            error_model=self.error.model(sightbound),
+            confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
+            threads=self.threads(parameters, context),
+            progress=Progress(feedback, 0.0, 30.0),
+        )
+        for warning in report["warnings"]:
+            feedback.pushWarning(warning)
+        feedback.pushInfo(tr("Samples free to move by the whole tolerance: {:.1%}").format(report["free_share"]))
+        return tolerance
 
     def _ending(self, parameters, context):
         return self.parameterAsFileOutput(parameters, "OUTPUT", context).rpartition(".")[2].lower()

@@ -72,6 +72,20 @@ def test_the_mesh_is_loaded_with_edges_and_the_heights_colours(provider, dem, tm
     assert stops[0] == pytest.approx(heights.classificationMinimum()) and stops == sorted(stops)
 
 
+def test_views_of_observers_stay(run, dem, tmp_path):
+    points = str(scenes.write_points(tmp_path / "eye.gpkg", [(scenes.WEST + 105.0, scenes.NORTH - 105.0, {})], {}))
+    views = {"OBSERVERS": points, "OBSERVER_HEIGHT": 2.0, "VERTICAL_ACCURACY": 0.3, "GEOLOGIC_VARIATION": 0.0}
+    log = scenes.Log()
+    kept = simplify(run, dem, tmp_path, TOLERANCE=8.0, feedback=log, **views)
+    assert kept["TRIANGLES"] > simplify(run, dem, tmp_path, TOLERANCE=8.0)["TRIANGLES"]
+    assert any("free to move" in line for line in log.infos)
+    with pytest.raises(QgsProcessingException, match="TOLERANCE"):
+        simplify(run, dem, tmp_path, TOLERANCE=None, **views)
+    with pytest.raises(QgsProcessingException, match="OBSERVERS"):
+        away = str(scenes.write_points(tmp_path / "away.gpkg", [(scenes.WEST - 1000.0, scenes.NORTH, {})], {}))
+        simplify(run, dem, tmp_path, TOLERANCE=8.0, **{**views, "OBSERVERS": away})
+
+
 def test_tiles_and_targets(run, dem, tmp_path):
     kept = simplify(run, dem, tmp_path, TOLERANCE=20.0, KEEP_BORDER=True)
     assert kept["TRIANGLES"] >= 2 * (39 + 29) - 2 > simplify(run, dem, tmp_path, TOLERANCE=20.0)["TRIANGLES"]
