@@ -152,7 +152,8 @@ def simplify(
         tolerance: metres, one for all places.
         error_model: instead of a tolerance: the result stays in the error volume. Numbers only, as for ErrorVolume.build().
         confidence: of the error, between 0 and 1.
-        border_tolerance: metres that the outline, also of holes, may move: in plan for height fields, else in space; its vertices
+        border_tolerance: metres that the outline, also of holes, may move: in plan for height fields (not at all where a part would then
+            lie over another), else in space; its vertices
             stay or go, its corners (60 degrees and more) stay. None: for height fields 0, or z(confidence) times the model's
             horizontal error; for others the least tolerance.
         keep: array, one for each vertex: those that stay where above 0.
@@ -215,11 +216,13 @@ def _like(name: str, given: Any, dem: Dem) -> FloatArray:
 
 def _of_tolerance(message: str) -> str:
     """The core knows a tolerance as an error."""
+    message = message.replace("Give the accuracy of the heights (vertical_rmse), or a tolerance.", "Give a larger tolerance there.")
     return message.replace("vertical_rmse", "tolerance").replace("The error raster", "The tolerance raster")
 
 
 def _count(faces: Any) -> int:
-    if isinstance(faces, bool) or not 1 <= faces < 2**31 or int(faces) != faces:
+    whole = not isinstance(faces, bool) and hasattr(faces, "__index__") or isinstance(faces, float) and faces.is_integer()
+    if not whole or not 1 <= faces < 2**31:
         raise ValueError(f"target_faces is {faces!r}; it must be a whole number of 1 or more.")
     return int(faces)
 

@@ -35,16 +35,18 @@ def visibility_tolerance(
 ) -> tuple[FloatArray, dict[str, Any]]:
     """A tolerance for dem_to_tin() that leaves the observers' views as they are.
 
-    What a viewshed with stand="ground" at this confidence calls visible or hidden from the DEM is so from the TIN too, eye and
-    target that high above it: samples keep half of z(confidence) times their standard deviation, or the tolerance if that is less.
-    Only ground that stays hidden even when it rises by the whole tolerance has all of it. Without vertical_rmse in the error model
-    the ground in view stays exactly as it is.
+    What a viewshed with stand="ground", this confidence, refraction and curvature, and these heights above ground calls visible or
+    hidden from the DEM is to be so from the TIN, eye and target that high above it. Samples in view keep to half of z(confidence) times
+    the least standard deviation of all samples, or to the tolerance if that is less; only ground that stays hidden even when it rises
+    by the whole tolerance has all of it. Samples are proven, places between them are not: through a notch in a wall near the eye one
+    may be seen although the samples around it are not. Without vertical_rmse in the error model the ground in view stays exactly as
+    it is.
 
     Args:
         dem: as read_dem() returns it.
         observers: sequence of (x, y), or array [n, 2], in the DEM's CRS.
         tolerance: metres, where nothing is at stake.
-        observer_height, target_height: metres above ground: one value, or one for each observer.
+        observer_height, target_height: metres above ground, the target's 0 or more: one value, or one for each observer.
         error_model: None estimates the DEM's error from the DEM.
         confidence: of what must stay, between 0 and 1.
         refraction, curvature: as viewshed() has them.

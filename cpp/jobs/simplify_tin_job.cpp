@@ -117,21 +117,40 @@ bool is_below_all_voxels(const SimplifyTinJob& job, SimplifyTinReport& report) {
   return true;
 }
 
+// An outline that moves may run over another part of the TIN; then it must not.
+TinSimplified simplify_height_field(const Tin& tin, const std::vector<float>& tolerance,
+                                    const TinSimplifyOptions& options, SimplifyTinReport& report,
+                                    Progress& progress) {
+  const bool outline_moves = options.outline_tolerance_m > 0;
+  HeightContainment heights(tin, tolerance);
+  progress.begin(outline_moves ? 0.5 : 1, 1);
+  TinSimplified made = simplify_tin(tin, heights, options, progress);
+  if (!outline_moves || TinSurface::metric_of(made.tin) == Metric::kVertical) return made;
+  report.warnings.emplace_back(
+      "The outline stays as it is: if it moved, a part of the TIN would lie over another.");
+  report.border_tolerance_m = 0;
+  TinSimplifyOptions still = options;
+  still.outline_tolerance_m = 0;
+  HeightContainment again(tin, tolerance);
+  progress.begin(0.5, 1);
+  return simplify_tin(tin, again, still, progress);
+}
+
 TinSimplified simplify(const Tin& tin, TinError error, const SimplifyTinJob& job,
                        const TinSimplifyOptions& options, SimplifyTinReport& report, Progress& progress) {
   if (is_below_all_voxels(job, report)) {
     NothingContained nothing;
     progress.begin(1, 1);
-    return simplify_tin(tin, nothing, options, progress);
+    TinSimplified made = simplify_tin(tin, nothing, options, progress);
+    if (report.vertical) made.largest_deviation_m = 0;
+    return made;
   }
   const std::vector<float> tolerance = tolerances_of(error, job);
   if (report.vertical) {
     MemoryBudget(job.memory_budget)
         .require(simplify_tin_memory(tin) + tin.faces.size() * HeightContainment::kBytesPerFace,
                  "Simplifying " + std::to_string(tin.faces.size()) + " faces", "Give a part of the TIN.");
-    HeightContainment heights(tin, tolerance);
-    progress.begin(1, 1);
-    return simplify_tin(tin, heights, options, progress);
+    return simplify_height_field(tin, tolerance, options, report, progress);
   }
   progress.begin(0.5, 1);
   GridContainment grid = grid_of(tin, std::move(error), job, report, progress);

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+#include <variant>
 
 #include "base/error.h"
+#include "base/memory_budget.h"
 #include "base/number_text.h"
 #include "base/parallel.h"
 #include "error_model/verdict.h"
@@ -19,9 +22,20 @@ namespace {
 // Of the range within which a claim holds: the other half is the target's.
 constexpr double kOwnPart = 0.5;
 
-std::vector<Observer> with_targets_raised(std::vector<Observer> observers, double metres) {
-  for (Observer& o : observers) o.target_height += metres;
-  return observers;
+// Asked about every sample, whatever else they are asked about: what lies on the way hides, too.
+std::vector<Observer> with_targets_raised(const std::vector<Observer>& observers, double metres) {
+  std::vector<Observer> raised;
+  for (const Observer& o : observers) {
+    if (!(o.target_height >= 0)) {
+      throw InvalidInput("target_height is " + number_text(o.target_height) +
+                         "; give metres above the ground, 0 or more.");
+    }
+    Observer all;
+    all.x = o.x, all.y = o.y, all.height = o.height, all.name = o.name, all.number = o.number;
+    all.target_height = o.target_height + metres;
+    raised.push_back(std::move(all));
+  }
+  return raised;
 }
 
 ViewshedOptions of_claims(const ViewshedOptions& given) {
@@ -35,17 +49,29 @@ ViewshedOptions of_claims(const ViewshedOptions& given) {
   return options;
 }
 
-SampleField sampling_error(const ErrorModel& completed, const DemSource& source, const Workers& workers,
-                           Progress& progress) {
+// The least sigma_s of all samples: near its ends a claim rests on theirs alone, and any sample may be one.
+double least_sampling(const ErrorModel& completed, const DemSource& source, const MemoryBudget& budget,
+                      const Workers& workers, Progress& progress) {
+  const double* everywhere = std::get_if<double>(&completed.vertical_rmse);
+  if (everywhere != nullptr && !(completed.horizontal_rmse > 0)) return *everywhere;
   const Window whole{0, 0, source.cols(), source.rows()};
+  budget.require(whole.cells() * sizeof(float) + resolve_error_memory(completed, whole).peak,
+                 "The error of " + std::to_string(whole.cols) + " x " + std::to_string(whole.rows) + " cells",
+                 "Give a part of the DEM, or allow a larger memory_budget.");
   Grid<float> heights = source.read(whole, progress);
-  std::vector<std::string> said_by_the_viewshed;
-  return resolve_error(completed, source, georeference_of(source), whole, heights, said_by_the_viewshed,
-                       workers, progress)
-      .sampling;
+  std::vector<std::string> said_by_the_viewshed_too;
+  const ErrorField error = resolve_error(completed, source, georeference_of(source), whole, heights,
+                                         said_by_the_viewshed_too, workers, progress);
+  if (error.sampling.is_constant()) return static_cast<double>(error.sampling.constant());
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < heights.size(); ++n) {
+    if (!std::isnan(heights.data()[n]))
+      least = std::min(least, static_cast<double>(error.sampling.values().data()[n]));
+  }
+  return std::isfinite(least) ? least : 0;
 }
 
-// Is nothing seen, or asked, at a sample and at its neighbours?
+// Is nothing seen of a sample and its neighbours? Where there is no terrain nothing is.
 bool is_free(const Grid<std::uint8_t>& verdict, int row, int col) {
   for (int r = std::max(row - 1, 0); r <= std::min(row + 1, verdict.rows() - 1); ++r) {
     for (int c = std::max(col - 1, 0); c <= std::min(col + 1, verdict.cols() - 1); ++c) {
@@ -67,18 +93,18 @@ VisibilityTolerance run_visibility_tolerance(const DemSource& source, const std:
   const Workers workers(options.threads);
   const ErrorModel completed = complete_model(model, source, result.warnings, progress);
   result.error_model = completed.describe();
-  const SampleField sampling = sampling_error(completed, source, workers, progress);
+  const double own =
+      kOwnPart * two_sided_quantile(options.confidence) *
+      least_sampling(completed, source, MemoryBudget(options.memory_budget), workers, progress);
   const ViewshedResult seen = run_viewshed(source, with_targets_raised(observers, tolerance_m), completed,
                                            of_claims(options), progress);
-  const double range = two_sided_quantile(options.confidence);
   result.tolerance = Grid<float>(source.rows(), source.cols());
   std::vector<int> free(static_cast<std::size_t>(source.rows()));
   workers.for_each(free.size(), [&](std::size_t n) {
     progress.check();
-    const int row = static_cast<int>(n), in_core = source.flipped() ? source.rows() - 1 - row : row;
+    const int row = static_cast<int>(n);
     for (int col = 0; col < source.cols(); ++col) {
       const bool whole_tolerance = is_free(seen.verdict, row, col);
-      const double own = kOwnPart * range * static_cast<double>(sampling.at(in_core, col));
       result.tolerance.at(row, col) =
           static_cast<float>(whole_tolerance ? tolerance_m : std::min(tolerance_m, own));
       free[n] += whole_tolerance;

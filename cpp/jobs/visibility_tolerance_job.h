@@ -2,10 +2,11 @@
 // How far a simplified terrain may be from a DEM, sample by sample, so that given observers see from it what
 // they see from the DEM.
 //
-// Claims are those of a viewshed with stand = ground: eye, target and obstacles may each be off by z(c)
-// sigma_s before one changes. So half of that is left to every sample. Samples that are hidden from all
-// observers even when they rise by the whole tolerance, and whose neighbours are, neither are seen nor hide
-// anything that something nearer does not hide: they have the whole tolerance.
+// Claims are those of a viewshed with stand = ground: they leave z(c) times the ends' sigma_s to spare at
+// least. So every sample keeps to half of z(c) times the least sigma_s of all. Samples that are hidden from
+// all observers even when they rise by the whole tolerance, and whose neighbours are, neither are seen nor
+// hide anything that something nearer does not hide: they have the whole tolerance. Not proven between
+// samples: through a notch in a wall near the eye a place may be seen although the samples around it are not.
 #pragma once
 
 #include <string>
@@ -25,8 +26,9 @@ struct VisibilityTolerance {
   std::vector<std::string> warnings;
 };
 
-// `tolerance_m` where nothing is at stake. Of the options confidence, refraction, curvature, threads and the
-// budget count. Cost: one viewshed for each observer. Throws as run_viewshed().
+// `tolerance_m` where nothing is at stake. Of the observers places, heights (targets 0 or more) and names
+// count, of the options confidence, refraction, curvature, threads and the budget. Cost: one viewshed for
+// each observer; where sigma_s varies the DEM is read once more. Throws as run_viewshed().
 VisibilityTolerance run_visibility_tolerance(const DemSource&, const std::vector<Observer>&,
                                              const ErrorModel&, double tolerance_m, const ViewshedOptions&,
                                              Progress&);

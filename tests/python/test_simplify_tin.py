@@ -206,3 +206,29 @@ def test_it_is_cancelled_and_tells_its_progress(body):
     assert told == sorted(told) and told[-1] == 1.0
     with pytest.raises(sb.Cancelled):
         sb.simplify(sb.Tin(*body), tolerance=0.5, progress=lambda f: f < 0.3)
+
+
+def ring(radius, count=64, noise=None):
+    turn = np.arange(count) * 2 * np.pi / count
+    z = np.zeros(count) if noise is None else noise.normal(0, 0.02, count)
+    return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), z])
+
+
+def test_an_outline_that_would_run_over_another_part_stays():
+    """A disk in the hole of a plate, a hand's breadth from its rim."""
+    noise = np.random.default_rng(4)
+    n, radii = 64, (1.0, 3.0, 5.0, 5.2, 7.0, 9.0)
+    points = np.vstack([ring(r, n, noise) for r in radii])
+    faces = []
+    for inner in (0, 1, 3, 4):
+        for i in range(n):
+            a, b, c, d = inner * n + i, inner * n + (i + 1) % n, (inner + 1) * n + i, (inner + 1) * n + (i + 1) % n
+            faces += [(a, c, b), (b, c, d)]
+    original = sb.Tin(points, faces)
+    assert original.is_height_field
+    simplified = sb.simplify(original, tolerance=1.0, border_tolerance=1.0)
+    assert simplified.is_height_field and len(simplified.faces) < len(original.faces)
+    assert simplified.report["border_tolerance"] == 0
+    assert any("outline stays" in warning for warning in simplified.report["warnings"])
+    with pytest.raises(ValueError, match="target_faces"):
+        sb.simplify(original, tolerance=1.0, target_faces="5")

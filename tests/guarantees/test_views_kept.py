@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""S6: on a TIN that was simplified with visibility_tolerance(), observers see what they are sure to see from the DEM, and nothing
+"""On a TIN that was simplified with visibility_tolerance(), observers see what they are sure to see from the DEM, and nothing
 that is surely hidden. Oracle: lines to every cell, held against the faces of the TIN at places strewn along them."""
 import numpy as np
 import pytest
@@ -77,8 +77,22 @@ def test_without_error_what_is_in_view_stays_exactly():
     assert (limit[seen != 0] == 0).all() and (limit == 5).any()
 
 
+def test_what_is_in_view_keeps_to_the_least_error_of_all():
+    z, sigma = np.zeros((15, 24), np.float32), np.full((15, 24), 0.01, np.float32)
+    z[:, 3], z[7, 3], sigma[7, 3] = 1.9, 0.0, 5.0  # a gate in a wall, badly known, right before the eye
+    dem, model = sb.Dem(z, GT), sb.ErrorModel(vertical_rmse=sigma, geologic_variation=0.0)
+    how = dict(observer_height=1.0, target_height=0.5, error_model=model, curvature=False)
+    limit, _ = sb.visibility_tolerance(dem, [(25.0, -75.0)], 6.0, **how)
+    sure = sb.viewshed(dem, [(25.0, -75.0)], stand="ground", **how).verdict
+    assert (sure == 2).sum() > 100 and limit[sure == 2].max() <= 0.5 * 1.96 * 0.01
+    clear = clearances(sb.dem_to_tin(dem, tolerance=limit), z.shape, (25.0, -75.0), 1.0, 0.5)
+    assert (clear[sure == 2] > 0).all() and (clear[sure == 0] < 0).all()
+
+
 def test_bad_input_is_named():
     dem = sb.Dem(np.float32(terrains.fractal((12, 12), 8)), GT)
+    with pytest.raises(ValueError, match="target_height"):
+        sb.visibility_tolerance(dem, [(55.0, -55.0)], 5.0, target_height=-1.0)
     for arguments, word in ((([(500.0, 500.0)], 5.0), "outside"), (([(55.0, -55.0)], -1.0), "tolerance"),
                             (([(55.0, -55.0)], float("nan")), "tolerance"), (([], 5.0), "observers")):
         with pytest.raises(ValueError, match=word):
