@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -26,20 +27,41 @@ Window block_at(int row, int col, const Originals& originals, int block) {
 }
 
 // Samples that have to stay, those of the rim for now.
-void fix(PlanMesh& mesh, const Originals::Part& part, const Window& window, const Originals& originals,
-         bool keep_border) {
+void set_kinds(PlanMesh& mesh, const Originals::Part& part, const Window& window, const KindRules& rules) {
   for (std::int32_t v = 0; v < static_cast<std::int32_t>(mesh.vertices()); ++v) {
     const int r = mesh.step_y(v) / kStepsPerCell, c = mesh.step_x(v) / kStepsPerCell;
     const bool kept =
         !part.dem.keep.empty() && part.dem.keep.at(r - part.window.row, c - part.window.col) != 0;
     if (kept) {
       mesh.set_kind(v, VertexKind::kFixed);
-    } else if (on_rim(window, originals.rows(), originals.cols(), r, c)) {
+    } else if (on_rim(window, rules.rows, rules.cols, r, c)) {
       mesh.set_kind(v, VertexKind::kRim);
-    } else if (keep_border && mesh.kind(v) != VertexKind::kInside) {
-      mesh.set_kind(v, VertexKind::kFixed);
+    } else if (mesh.kind(v) == VertexKind::kInside) {
+      mesh.set_kind(v, kind_of(mesh, v, rules));
     }
   }
+}
+
+// Edges of lines that have an end without terrain; those on a rim count in one block only.
+std::size_t count_lost(const Grid<std::uint8_t>& lines, const Originals::Part& part, const Window& window,
+                       const KindRules& rules) {
+  if (lines.empty()) return 0;
+  const auto there = [&](int r, int c) {
+    return !std::isnan(
+        part.dem.heights.at(window.row + r - part.window.row, window.col + c - part.window.col));
+  };
+  const int rows = window.row_end() == rules.rows ? window.rows : window.rows - 1;
+  const int cols = window.col_end() == rules.cols ? window.cols : window.cols - 1;
+  std::size_t lost = 0;
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < cols; ++c) {
+      for (const auto& [bit, down, right] :
+           {std::tuple{kLineEast, 0, 1}, {kLineSouth, 1, 0}, {kLineSouthEast, 1, 1}}) {
+        if ((lines.at(r, c) & bit) != 0 && !(there(r, c) && there(r + down, c + right))) ++lost;
+      }
+    }
+  }
+  return lost;
 }
 
 std::size_t most_to_go(std::size_t faces, double least_part) {
@@ -54,7 +76,7 @@ BlocksDecimated decimate_blocks(Originals& originals, const BlockPlan& plan, con
                                 const Workers& workers, Progress& progress) {
   BlocksDecimated result;
   Decimation& whole = result.left;
-  BlockJoiner joiner(whole.mesh(), originals.rows(), originals.cols());
+  BlockJoiner joiner(whole.mesh(), plan.kinds);
   const int down = count_blocks(originals.rows(), plan.block),
             across = count_blocks(originals.cols(), plan.block);
   const int at_once = originals.tiles_at_once(plan.block);
@@ -66,19 +88,20 @@ BlocksDecimated decimate_blocks(Originals& originals, const BlockPlan& plan, con
     struct Done {
       Window window;
       Decimation left;
-      std::size_t faces = 0;
+      std::size_t faces = 0, edges_lost = 0;
     };
     std::vector<Done> done(at((end - first) * across));
     workers.for_each(done.size(), [&](std::size_t n) {
       const int number = static_cast<int>(n);
       const Window window = block_at(first + number / across, number % across, originals, plan.block);
-      PlanMesh mesh(part.dem.heights, part.window, window);
-      const std::size_t faces = mesh.count_faces();
-      fix(mesh, part, window, originals, plan.keep_border);
+      const Grid<std::uint8_t> lines = line_bits(plan.break_lines, window);
+      PlanMesh mesh(part.dem.heights, part.window, window, lines);
+      const std::size_t faces = mesh.count_faces(), lost = count_lost(lines, part, window, plan.kinds);
+      set_kinds(mesh, part, window, plan.kinds);
       Decimation block(std::move(mesh));
       block.pass(plan.pass, envelope, most_to_go(faces, plan.least_part), progress);
       block.compact();
-      done[n] = {window, std::move(block), faces};
+      done[n] = {window, std::move(block), faces, lost};
       progress.advance(plan.pass.share / (static_cast<double>(down) * across));
     });
     for (Done& one : done) {
@@ -87,6 +110,7 @@ BlocksDecimated decimate_blocks(Originals& originals, const BlockPlan& plan, con
                          " triangles are left. Give a larger tolerance, or a part of the DEM.");
       }
       result.faces_before += one.faces;
+      result.break_line_edges_lost += one.edges_lost;
       whole.add(std::move(one.left), one.window, joiner);
     }
     whole.expect_of_all(static_cast<double>(end) / down);
@@ -96,11 +120,6 @@ BlocksDecimated decimate_blocks(Originals& originals, const BlockPlan& plan, con
                    "Give a larger tolerance, or a part of it.");
   }
   whole.finish(joiner);
-  if (plan.keep_border) {
-    for (std::int32_t v = 0; v < static_cast<std::int32_t>(whole.mesh().vertices()); ++v) {
-      if (whole.mesh().kind(v) != VertexKind::kInside) whole.mesh().set_kind(v, VertexKind::kFixed);
-    }
-  }
   return result;
 }
 

@@ -4,25 +4,29 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include "base/memory_budget.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "simplify/decimation.h"
+#include "simplify/line_chain.h"
 #include "simplify/originals.h"
+#include "simplify/vertex_kinds.h"
 
 namespace sightbound {
 
 struct BlockPlan {
-  int block = 256;           // squares of samples a side; a function of nothing else, as the result is
-  bool keep_border = false;  // samples of the outline and of holes stay
-  double least_part = 0;     // of its faces that a block keeps
-  PassPlan pass;             // of each block
+  int block = 256;  // squares of samples a side; a function of nothing else, as the result is
+  KindRules kinds;
+  std::span<const LineEdge> break_lines;
+  double least_part = 0;  // of its faces that a block keeps
+  PassPlan pass;          // of each block
 };
 
 struct BlocksDecimated {
   Decimation left;
-  std::size_t faces_before = 0;
+  std::size_t faces_before = 0, break_line_edges_lost = 0;
 };
 
 // Throws OverBudget as soon as what is left does not fit. Advances `progress` by the pass's share.

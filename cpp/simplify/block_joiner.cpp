@@ -19,8 +19,13 @@ void BlockJoiner::Rim::clear() {
   std::fill(corner.begin(), corner.end(), PlanMesh::kNone);
 }
 
-BlockJoiner::BlockJoiner(PlanMesh& whole, int rows, int cols)
-    : whole_(whole), rows_(rows), cols_(cols), above_(cols), below_(cols), left_(rows), right_(rows) {}
+BlockJoiner::BlockJoiner(PlanMesh& whole, const KindRules& rules)
+    : whole_(whole),
+      rules_(rules),
+      above_(rules.cols),
+      below_(rules.cols),
+      left_(rules.rows),
+      right_(rules.rows) {}
 
 std::vector<std::int32_t> BlockJoiner::add(const PlanMesh& block, const Window& window) {
   begin(window);
@@ -28,10 +33,11 @@ std::vector<std::int32_t> BlockJoiner::add(const PlanMesh& block, const Window& 
   for (std::int32_t v = 0; at(v) < block.vertices(); ++v) number[at(v)] = number_of(block, v);
   const auto first = static_cast<std::int32_t>(whole_.corners_.size());
   for (const PlanMesh::Corner& corner : block.corners_) {
-    const bool filler = corner.vertex == PlanMesh::kNone;
+    const bool marks = corner.vertex == PlanMesh::kNone;
     const bool open = corner.opposite == PlanMesh::kNone;
-    whole_.corners_.push_back({filler ? PlanMesh::kNone : number[at(corner.vertex)],
-                               open ? PlanMesh::kNone : first + corner.opposite});
+    whole_.corners_.push_back(marks ? corner
+                                    : PlanMesh::Corner{number[at(corner.vertex)],
+                                                       open ? PlanMesh::kNone : first + corner.opposite});
   }
   for (std::int32_t c = first; at(c) < whole_.corners_.size(); ++c) {
     if (whole_.vertex(c) != PlanMesh::kNone && whole_.opposite(c) == PlanMesh::kNone) join_edge(c);
@@ -53,9 +59,9 @@ void BlockJoiner::begin(const Window& window) {
 std::vector<BlockJoiner::Place> BlockJoiner::places_of(int row, int col) {
   std::vector<Place> places;
   if (row == window_.row && row > 0) places.push_back({&above_, at(col)});
-  if (row == window_.row_end() - 1 && row < rows_ - 1) places.push_back({&below_, at(col)});
+  if (row == window_.row_end() - 1 && row < rules_.rows - 1) places.push_back({&below_, at(col)});
   if (col == window_.col && col > 0) places.push_back({&left_, at(row)});
-  if (col == window_.col_end() - 1 && col < cols_ - 1) places.push_back({&right_, at(row)});
+  if (col == window_.col_end() - 1 && col < rules_.cols - 1) places.push_back({&right_, at(row)});
   return places;
 }
 
@@ -99,7 +105,7 @@ void BlockJoiner::join_edge(std::int32_t corner) {
 
 std::vector<std::int32_t> BlockJoiner::finish() {
   for (std::int32_t v = 0; at(v) < whole_.vertices(); ++v) {
-    if (whole_.kind(v) == VertexKind::kRim) whole_.set_kind(v, whole_.kind_by_outline(v));
+    if (whole_.kind(v) == VertexKind::kRim) whole_.set_kind(v, kind_of(whole_, v, rules_));
   }
   return whole_.split_touching();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "simplify/plan_mesh.h"
+#include "simplify/vertex_kinds.h"
 
 namespace sightbound {
 
@@ -16,8 +17,8 @@ bool on_rim(const Window& block, int rows, int cols, int row, int col);
 
 class BlockJoiner {
  public:
-  // Of a raster of so many samples. `whole` is empty and must outlive this.
-  BlockJoiner(PlanMesh& whole, int rows, int cols);
+  // `whole` is empty and must outlive this.
+  BlockJoiner(PlanMesh& whole, const KindRules& rules);
 
   // Blocks come row by row from above, from left to right. Returns the number that each vertex of the block
   // has in the whole.
@@ -44,7 +45,7 @@ class BlockJoiner {
   void join_edge(std::int32_t corner);
 
   PlanMesh& whole_;
-  const int rows_, cols_;
+  const KindRules rules_;
   Window window_;
   Rim above_, below_, left_, right_;  // of the block at hand
 };

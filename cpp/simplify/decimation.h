@@ -17,6 +17,7 @@
 #include "simplify/block_joiner.h"
 #include "simplify/bucket_queue.h"
 #include "simplify/envelope.h"
+#include "simplify/line_rules.h"
 #include "simplify/originals.h"
 #include "simplify/plan_mesh.h"
 #include "simplify/quadric.h"
@@ -29,6 +30,7 @@ struct PassPlan {
   bool relax = false;                       // move vertices to where they have most room before anything else
   std::size_t cost_classes = kCostClasses;  // collapses that cost more are left to other passes
   double share = 0;                         // of `progress`
+  LineRules lines;                          // the same in all passes
 };
 
 inline constexpr std::size_t kAllCollapses = std::numeric_limits<std::size_t>::max();

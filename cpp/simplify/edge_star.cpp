@@ -6,12 +6,14 @@ namespace sightbound {
 namespace {
 
 // May a vertex be drawn into one that is of no lower kind?
-bool may_go(VertexKind kind, bool outline_edge) {
+bool may_go(VertexKind kind, bool outline_edge, bool line_edge) {
   switch (kind) {
     case VertexKind::kInside:
       return true;
     case VertexKind::kOutline:
       return outline_edge;
+    case VertexKind::kOnLine:
+      return outline_edge || line_edge;
     default:
       return false;
   }
@@ -85,7 +87,8 @@ bool gather(const PlanMesh& mesh, std::int32_t corner, bool prefer_next, EdgeSta
   star.b = a_is_next ? one : other;
   const std::int32_t beyond = mesh.opposite(PlanMesh::previous(corner));  // the other triangle's apex
   const bool outline_edge = beyond == PlanMesh::kNone;
-  if (!may_go(mesh.kind(star.b), outline_edge)) return false;
+  const bool line_edge = mesh.line(PlanMesh::previous(corner)) != 0;
+  if (!may_go(mesh.kind(star.b), outline_edge, line_edge)) return false;
   if (outline_edge) {
     if (!ring_of_outline_edge(mesh, corner, star)) return false;
   } else if (!ring_of_inner_edge(mesh, a_is_next ? PlanMesh::next(beyond) : corner, star)) {

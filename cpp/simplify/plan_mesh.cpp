@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simplify/plan_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sightbound {
 
-PlanMesh::PlanMesh(const Grid<float>& heights, const Window& held, const Window& window) {
+PlanMesh::PlanMesh(const Grid<float>& heights, const Window& held, const Window& window,
+                   const Grid<std::uint8_t>& lines) {
   const int rows = window.rows, cols = window.cols;
   const auto height = [&](int r, int c) {
     return heights.at(window.row - held.row + r, window.col - held.col + c);
@@ -28,18 +30,27 @@ PlanMesh::PlanMesh(const Grid<float>& heights, const Window& held, const Window&
     std::int32_t left = kNone;  // the upper triangle of the square to the left
     for (int c = 0; c + 1 < cols; ++c) {
       const bool ends = there(r, c) && there(r + 1, c + 1);
-      const auto add = [&](int r1, int c1, int r2, int c2) {
+      const auto add = [&](int r1, int c1, int r2, int c2, std::int32_t marks) {
         const auto corner = static_cast<std::int32_t>(corners_.size());
         for (const std::int32_t v : {vertex_at(r, c), vertex_at(r1, c1), vertex_at(r2, c2)}) {
           vertices_[at(v)].corner = static_cast<std::int32_t>(corners_.size());
           corners_.push_back({v, kNone});
         }
-        corners_.emplace_back();
+        corners_.push_back({kNone, marks});
         return corner;
       };
+      const auto mark = [&](int corner, int row, int col, LineBits bit) {
+        return !lines.empty() && (lines.at(row, col) & bit) != 0 ? 1 << line_shift(corner) : 0;
+      };
       std::int32_t upper = kNone, lower = kNone;
-      if (ends && there(r, c + 1)) upper = add(r, c + 1, r + 1, c + 1);
-      if (ends && there(r + 1, c)) lower = add(r + 1, c + 1, r + 1, c);
+      if (ends && there(r, c + 1)) {
+        upper = add(r, c + 1, r + 1, c + 1,
+                    mark(0, r, c + 1, kLineSouth) | mark(1, r, c, kLineSouthEast) | mark(2, r, c, kLineEast));
+      }
+      if (ends && there(r + 1, c)) {
+        lower = add(r + 1, c + 1, r + 1, c,
+                    mark(0, r + 1, c, kLineEast) | mark(1, r, c, kLineSouth) | mark(2, r, c, kLineSouthEast));
+      }
       std::int32_t& over = above[at(c)];
       if (upper != kNone && lower != kNone) join(upper + 1, lower + 2);
       if (upper != kNone && over != kNone) join(upper + 2, over);
@@ -48,7 +59,6 @@ PlanMesh::PlanMesh(const Grid<float>& heights, const Window& held, const Window&
       over = lower;
     }
   }
-  for (std::int32_t v = 0; at(v) < vertices_.size(); ++v) set_kind(v, kind_by_outline(v));
   split_touching();
 }
 
@@ -79,8 +89,8 @@ std::vector<std::int32_t> PlanMesh::compact() {
   for (std::int32_t c = 0; at(c) < corners_.size(); ++c) {
     if (triangle[at(c / 4)] == kNone) continue;
     const Corner corner = corners_[at(c)];
-    const std::int32_t v = corner.vertex == kNone ? kNone : number[at(corner.vertex)];
-    corners_[at(moved(c))] = {v, moved(corner.opposite)};
+    const bool marks = (c & 3) == 3;
+    corners_[at(moved(c))] = marks ? corner : Corner{number[at(corner.vertex)], moved(corner.opposite)};
   }
   corners_.resize(4 * at(left));
   corners_.shrink_to_fit();
@@ -120,6 +130,7 @@ void PlanMesh::collapse(std::int32_t corner, std::int32_t kept) {
     c = after;
   }
   vertices_[at(gone)].corner = kNone;
+  vertices_[at(gone)].x = kept;
   remove_triangle(left);
   if (right != kNone) remove_triangle(right);
 }
@@ -128,6 +139,7 @@ void PlanMesh::collapse(std::int32_t corner, std::int32_t kept) {
 void PlanMesh::remove_triangle(std::int32_t apex) {
   const std::int32_t tip = vertex(apex), kept = vertex(next(apex));
   const std::int32_t one = opposite(next(apex)), other = opposite(previous(apex));
+  const std::int32_t line_of_both = std::max(line(next(apex)), line(previous(apex)));
   if (one != kNone) corners_[at(one)].opposite = other;
   if (other != kNone) corners_[at(other)].opposite = one;
   // Across the edge from tip to kept, seen from `one` and `other`.
@@ -135,26 +147,24 @@ void PlanMesh::remove_triangle(std::int32_t apex) {
   const bool turned = vertex(next(beside)) == tip;
   vertices_[at(tip)].corner = turned ? next(beside) : previous(beside);
   vertices_[at(kept)].corner = turned ? previous(beside) : next(beside);
-  for (const std::int32_t c : {apex, next(apex), previous(apex)}) {
-    corners_[at(c)] = {};
-  }
+  set_line(beside, line_of_both);
+  for (const std::int32_t c : {apex, next(apex), previous(apex)}) corners_[at(c)] = {};
+  corners_[at(apex | 3)] = {kNone, 0};
+}
+
+void PlanMesh::set_line(std::int32_t corner, std::int32_t value) {
+  set_line_here(corner, value);
+  if (opposite(corner) != kNone) set_line_here(opposite(corner), value);
+}
+
+void PlanMesh::set_line_here(std::int32_t corner, std::int32_t value) {
+  std::int32_t& marks = corners_[at(corner | 3)].opposite;
+  marks = (marks & ~(kMostLine << line_shift(corner))) | (value << line_shift(corner));
 }
 
 void PlanMesh::join(std::int32_t a, std::int32_t b) {
   corners_[at(a)].opposite = b;
   corners_[at(b)].opposite = a;
-}
-
-// One that ends a straight piece of the outline is a corner.
-VertexKind PlanMesh::kind_by_outline(std::int32_t v) const {
-  const std::int32_t first = first_corner(v);
-  if (!on_outline(first)) return VertexKind::kInside;
-  std::int32_t last = first;
-  for (std::int32_t c = first; c != kNone; c = counterclockwise(c)) last = c;
-  const std::int32_t a = vertex(next(first)), b = vertex(previous(last));
-  const Point p = place(v), p_a = place(a), p_b = place(b);
-  const bool ahead = (p_a.x - p.x) * (p_b.x - p.x) + (p_a.y - p.y) * (p_b.y - p.y) < 0;
-  return ahead && area2(p, p_a, p_b) == 0 ? VertexKind::kOutline : VertexKind::kCorner;
 }
 
 // A sample of several fans of triangles becomes a vertex of each, and none of them moves.

@@ -5,7 +5,8 @@
 // doubles made of them are exact on rasters up to 2^20 cells a side, so that no orientation is ever in doubt.
 //
 // A corner table: triangle t has the corners 4 t, 4 t + 1, 4 t + 2, counterclockwise where columns run right
-// and rows run up. opposite(c) is the corner across the edge that lies opposite to c.
+// and rows run up. opposite(c) is the corner across the edge that lies opposite to c. What would be the
+// fourth corner tells which edges belong to lines.
 #pragma once
 
 #include <cstddef>
@@ -23,10 +24,14 @@ inline constexpr int kMostCells = 1 << 20;  // a side
 enum class VertexKind : std::uint8_t {
   kInside,   // anything
   kOutline,  // move along the straight outline, or leave it
+  kOnLine,   // leave its line, within the line's tolerance, or take another height
   kCorner,   // take another height
   kFixed,    // nothing
   kRim,      // nothing, until its block is joined to the next
 };
+
+// Edges of the regular TIN that break lines run along, at the sample in the northwest.
+enum LineBits : std::uint8_t { kLineEast = 1, kLineSouth = 2, kLineSouthEast = 4 };
 
 struct Point {
   double x = 0, y = 0, z = 0;  // columns, rows, metres
@@ -54,9 +59,11 @@ class PlanMesh {
       (std::size_t{1} << 29) - 1;  // corners are numbered in 31 bits
 
   PlanMesh() = default;
-  // The regular TIN of a window of a DEM; `heights` are those of a window that holds it. Where parts touch in
-  // one sample only, it becomes a vertex of each, and none of them moves.
-  PlanMesh(const Grid<float>& heights, const Window& held, const Window& window);
+  // The regular TIN of a window of a DEM; `heights` are those of a window that holds it, `lines` the LineBits
+  // of the window's samples, or empty. All vertices are inside, but where parts touch in one sample only: it
+  // becomes a vertex of each, and none of them moves.
+  PlanMesh(const Grid<float>& heights, const Window& held, const Window& window,
+           const Grid<std::uint8_t>& lines);
 
   std::size_t vertices() const { return vertices_.size(); }  // removed ones included
   std::size_t triangles() const { return corners_.size() / 4; }
@@ -66,6 +73,12 @@ class PlanMesh {
   static std::int32_t previous(std::int32_t corner) { return (corner & 3) == 0 ? corner + 2 : corner - 1; }
   std::int32_t vertex(std::int32_t corner) const { return corners_[at(corner)].vertex; }
   std::int32_t opposite(std::int32_t corner) const { return corners_[at(corner)].opposite; }
+  // Of the edge opposite to a corner: 0 = it belongs to no line; else one more than the steps by which it has
+  // strayed from its line (line_rules.h).
+  std::int32_t line(std::int32_t corner) const {
+    return (corners_[at(corner | 3)].opposite >> line_shift(corner)) & kMostLine;
+  }
+  void set_line(std::int32_t corner, std::int32_t value);  // seen from both sides
   // Some corner at a vertex; kNone = removed.
   std::int32_t corner_of(std::int32_t vertex) const { return vertices_[at(vertex)].corner; }
   bool alive(std::int32_t triangle) const { return corners_[at(4 * triangle)].vertex != kNone; }
@@ -82,6 +95,7 @@ class PlanMesh {
   std::int32_t first_corner(std::int32_t vertex) const;
   // The corner at a whose next is b, kNone = there is none.
   std::int32_t corner_towards(std::int32_t a, std::int32_t b) const;
+  bool on_outline(std::int32_t first_corner) const { return opposite(previous(first_corner)) == kNone; }
   // A corner at one of a and b whose next is at the other; kNone = they are no neighbours.
   std::int32_t edge(std::int32_t a, std::int32_t b) const {
     const std::int32_t corner = corner_towards(a, b);
@@ -115,6 +129,10 @@ class PlanMesh {
   std::vector<std::int32_t> compact();
   // Draws the edge from a corner's vertex to its next's together: `kept` is one of the two, the other goes.
   void collapse(std::int32_t corner, std::int32_t kept);
+  // Of a vertex that went, until compact(): the one it was drawn into.
+  std::int32_t drawn_into(std::int32_t gone) const { return vertices_[at(gone)].x; }
+
+  static constexpr std::int32_t kMostLine = (1 << 10) - 1;
 
  private:
   friend class BlockJoiner;
@@ -130,12 +148,12 @@ class PlanMesh {
   };
 
   static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+  static int line_shift(std::int32_t corner) { return 10 * (corner & 3); }
+  void set_line_here(std::int32_t corner, std::int32_t value);
   void join(std::int32_t a, std::int32_t b);
   void remove_triangle(std::int32_t apex);
   // Returns whose twins the vertices are that it appends.
   std::vector<std::int32_t> split_touching();
-  VertexKind kind_by_outline(std::int32_t vertex) const;
-  bool on_outline(std::int32_t first_corner) const { return opposite(previous(first_corner)) == kNone; }
 
   std::vector<Corner> corners_;
   std::vector<Vertex> vertices_;

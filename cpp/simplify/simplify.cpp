@@ -50,15 +50,31 @@ void check(const SimplifyOptions& options) {
   if (bytes.most > 0 && options.target_faces > 0) {
     throw InvalidInput("target_faces and target_bytes say the same thing; give only one of them.");
   }
+  for (const auto& [tolerance, name] : {std::pair{options.border_tolerance_m, "border_tolerance"},
+                                        std::pair{options.break_line_tolerance_m, "break_line_tolerance"}}) {
+    if (tolerance >= 0 && std::isfinite(tolerance)) continue;
+    throw InvalidInput(std::string(name) + " is " + number_text(tolerance) + "; give metres, 0 or more.");
+  }
+  if (options.keep_border && options.border_tolerance_m > 0)
+    throw InvalidInput("keep_border keeps the outline where it is; give no border_tolerance with it.");
   if (!(options.least_gain >= 0 && options.least_gain <= 1)) {
     throw InvalidInput("least_gain is " + number_text(options.least_gain) + "; give a part, 0 to 1.");
   }
 }
 
+LineRules line_rules(const SimplifyOptions& options, const DemPlace& place) {
+  const auto& g = place.geotransform.coefficients();
+  const double unit = place.metres_per_unit;
+  return {options.border_tolerance_m,
+          options.break_line_tolerance_m,
+          {g[1] * unit, g[4] * unit, g[2] * unit, g[5] * unit}};
+}
+
 // Tiles wander, so that what lies at a seam in one pass lies inside a tile in another; with odd eighths none
 // has its edges at rims of blocks. They grow as faces do: with few of them in a tile, most would lie at
 // seams.
-PassPlan plan_of(std::size_t n, const Decimation& decimation, const Originals& originals, int block) {
+PassPlan plan_of(std::size_t n, const Decimation& decimation, const Originals& originals, int block,
+                 const LineRules& lines) {
   constexpr std::array<std::array<int, 2>, 4> kShifts{{{1, 1}, {5, 5}, {1, 5}, {5, 1}}};  // eighths of a tile
   constexpr double kFacesOfTile = 1000;
   const double density = static_cast<double>(decimation.mesh().triangles()) /
@@ -66,16 +82,16 @@ PassPlan plan_of(std::size_t n, const Decimation& decimation, const Originals& o
   int tile = block;
   while (tile < kLargestTile * block && density * tile * tile < kFacesOfTile) tile *= 2;
   const auto [x, y] = kShifts[n % kShifts.size()];
-  return {.tile = tile, .shift_x = x * tile / 8, .shift_y = y * tile / 8};
+  return {.tile = tile, .shift_x = x * tile / 8, .shift_y = y * tile / 8, .lines = lines};
 }
 constexpr std::size_t kLeastPasses = 3, kMostPasses = 100;
 
 // Until little is gained.
 void decimate(Decimation& decimation, Originals& originals, const SimplifyOptions& options,
-              const Workers& workers, Progress& progress) {
+              const LineRules& lines, const Workers& workers, Progress& progress) {
   double left = kShareOfPasses;
   for (std::size_t n = 0; n < kMostPasses; ++n) {
-    PassPlan plan = plan_of(n, decimation, originals, options.block);
+    PassPlan plan = plan_of(n, decimation, originals, options.block, lines);
     plan.relax = true;
     plan.share = 0.5 * left;
     left -= plan.share;
@@ -112,13 +128,14 @@ struct Target {
 
 // Until the target is reached; where the tolerance does not let it be, until little is gained.
 void decimate_to_target(Decimation& decimation, const Target& target, Originals& originals,
-                        const SimplifyOptions& options, const Workers& workers, Progress& progress) {
+                        const SimplifyOptions& options, const LineRules& lines, const Workers& workers,
+                        Progress& progress) {
   double left = kShareOfPasses;
   std::size_t fruitless = 0;
   for (std::size_t n = 0; n < kMostPasses && fruitless < kLeastPasses; ++n) {
     const std::size_t collapses = target.collapses_to_go(decimation.mesh());
     if (collapses == 0) return;
-    PassPlan plan = plan_of(n, decimation, originals, options.block);
+    PassPlan plan = plan_of(n, decimation, originals, options.block, lines);
     plan.relax = fruitless > 0;
     plan.share = 0.2 * left;
     left -= plan.share;
@@ -178,8 +195,11 @@ SimplifiedTin simplify_dem(DemWindows& dem, const DemPlace& place, const Simplif
   Originals originals(dem, options.tolerance_m, options.samples_at_once);
   const std::size_t bytes = bytes_of_blocks(originals, options.block, workers.count());
   budget.require(bytes, "Simplifying the DEM", "Give a part of it.");
-  BlockPlan blocks{
-      .block = options.block, .keep_border = options.keep_border, .pass = {.share = kShareOfBlocks}};
+  const LineRules lines = line_rules(options, place);
+  BlockPlan blocks{.block = options.block,
+                   .kinds = {dem.rows(), dem.cols(), options.keep_border, options.border_tolerance_m > 0},
+                   .break_lines = options.break_lines,
+                   .pass = {.share = kShareOfBlocks, .lines = lines}};
   const Target target(options);
   if (target.is_set()) {
     const std::size_t faces = count_faces(originals, options.block, progress);
@@ -190,13 +210,14 @@ SimplifiedTin simplify_dem(DemWindows& dem, const DemPlace& place, const Simplif
   if (done.faces_before == 0)
     throw InvalidInput("The DEM has no three samples side by side that are not nodata: it makes no surface.");
   if (target.is_set()) {
-    decimate_to_target(done.left, target, originals, options, workers, progress);
+    decimate_to_target(done.left, target, originals, options, lines, workers, progress);
   } else {
-    decimate(done.left, originals, options, workers, progress);
+    decimate(done.left, originals, options, lines, workers, progress);
   }
   const PlanMesh mesh = std::exchange(done.left, {}).release();
   SimplifiedTin result = written_tin(mesh, place, originals, workers, progress);
   result.report.faces_before = done.faces_before;
+  result.report.break_line_edges_lost = done.break_line_edges_lost;
   result.report.kept_for_rounding_m = 2 * originals.rounding();
   return result;
 }

@@ -12,9 +12,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/progress.h"
 #include "simplify/dem_windows.h"
+#include "simplify/line_chain.h"
 #include "terrain/geotransform.h"
 #include "terrain/grid.h"
 #include "terrain/tin.h"
@@ -41,6 +43,13 @@ struct SimplifyOptions {
   Grid<float> tolerance;     // of each sample, metres, linear on each triangle; empty = tolerance_m
   Grid<std::uint8_t> keep;   // samples that stay vertices at their own height where not 0; empty = none
   bool keep_border = false;  // all samples of the outline and of holes stay: neighbouring tiles fit
+  // By how many metres the outline may move in plan, that of holes too; the raster's corners stay. Where it
+  // advances over what has no terrain, heights are those of the triangles beside.
+  double border_tolerance_m = 0;
+  // Edges that stay edges but for vertices between them, each longer one within so many metres of those it
+  // stands for (line_chain.h: in order, each once).
+  std::vector<LineEdge> break_lines;
+  double break_line_tolerance_m = 0;
   // Stop as soon as there are no more faces, give or take one, what is cheap everywhere first; or as soon as
   // vertices and faces take no more bytes. 0 = until nothing can be removed. The tolerance may leave more.
   std::int64_t target_faces = 0;
@@ -62,9 +71,10 @@ struct SimplifyOptions {
 
 struct SimplifyReport {
   std::size_t faces_before = 0, faces_after = 0;
-  double largest_deviation_m = 0;  // certified: nowhere more
-  double largest_ratio = 0;        // of deviation to tolerance, certified; 0 where both are 0
-  double kept_for_rounding_m = 0;  // of the tolerance
+  double largest_deviation_m = 0;         // certified: nowhere more
+  double largest_ratio = 0;               // of deviation to tolerance, certified; 0 where both are 0
+  double kept_for_rounding_m = 0;         // of the tolerance
+  std::size_t break_line_edges_lost = 0;  // that have no terrain on either side
 };
 
 struct SimplifiedTin {

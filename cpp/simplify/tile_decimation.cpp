@@ -34,7 +34,10 @@ void TileDecimation::relax(std::span<const std::int32_t> vertices, Progress& pro
 
 std::size_t TileDecimation::run(std::span<const std::int32_t> vertices, std::size_t most_collapses,
                                 Progress& progress) {
-  for (const std::int32_t v : vertices) push_untested_edges(v);
+  for (const std::int32_t v : vertices) {
+    index_outline(v);
+    push_untested_edges(v);
+  }
   Edge edge{};
   for (std::size_t n = 0; collapses_ < most_collapses && pop(edge); ++n) {
     if (n % kCheckEvery == 0) progress.check();
@@ -142,16 +145,45 @@ std::int32_t TileDecimation::corner_of(const Edge& edge) const {
 
 void TileDecimation::try_collapse(std::int32_t corner) {
   if (corner == PlanMesh::kNone) return;
-  const bool next_stays = stays(mesh_.vertex(PlanMesh::next(corner)));
-  if (!gather(mesh_, corner, next_stays, star_) || stays(star_.b)) return;
+  const std::int32_t one = mesh_.vertex(corner), other = mesh_.vertex(PlanMesh::next(corner));
+  if (try_collapse_of(corner, stays(other))) return;
+  // On a line it matters which of two alike goes: neither moves.
+  const bool alike = mesh_.kind(one) == VertexKind::kOnLine && mesh_.kind(other) == VertexKind::kOnLine;
+  if (alike && !stays(other)) try_collapse_of(corner, true);
+}
+
+bool TileDecimation::try_collapse_of(std::int32_t corner, bool next_stays) {
+  if (!gather(mesh_, corner, next_stays, star_) || stays(star_.b)) return false;
+  std::optional<LineRules::Edge> edge;
+  if (mesh_.kind(star_.b) == VertexKind::kOnLine) {
+    edge = line_without_b();
+    if (!edge) return false;
+  }
   const QuadricSum quadric = quadrics(star_.a, star_.b);
   const auto place = find_place(envelope_, star_, quadric, freedom(star_.a, star_.right < 0));
-  if (place) collapse(*place, quadric);
+  if (!place) return false;
+  const std::int32_t a = star_.a;
+  collapse(*place, quadric);
+  if (edge) mesh_.set_line(PlanMesh::previous(mesh_.edge(a, edge->to)), edge->line);
+  return true;
+}
+
+// Tiles do not see each other: the outline advances within its own.
+std::optional<LineRules::Edge> TileDecimation::line_without_b() {
+  const auto edge = plan_.lines.without_b(mesh_, star_);
+  if (!edge || !edge->advances) return edge;
+  const bool room = in_tile(edge->to) && !outline_.any_in(mesh_, star_.a, star_.b, edge->to);
+  return room ? edge : std::nullopt;
+}
+
+void TileDecimation::index_outline(std::int32_t v) {
+  if (plan_.lines.outline_moves() && mesh_.on_outline(mesh_.first_corner(v))) outline_.add(v, mesh_.place(v));
 }
 
 void TileDecimation::collapse(const Point& to, const QuadricSum& quadric) {
   const std::int32_t a = star_.a;
   if (!stays(a)) mesh_.move(a, to);
+  index_outline(a);
   mesh_.collapse(star_.corner, a);
   faces_gone_ += star_.right < 0 ? 1 : 2;
   ++collapses_;

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/progress.h"
 #include "simplify/bucket_queue.h"
 #include "simplify/decimation.h"
+#include "simplify/outline_index.h"
 #include "simplify/placement.h"
 
 namespace sightbound {
@@ -49,6 +51,9 @@ class TileDecimation {
   Freedom freedom(std::int32_t a, bool outline_edge);
   std::int32_t corner_of(const Edge& edge) const;
   void try_collapse(std::int32_t corner);
+  bool try_collapse_of(std::int32_t corner, bool next_stays);
+  std::optional<LineRules::Edge> line_without_b();
+  void index_outline(std::int32_t v);
   void collapse(const Point& to, const QuadricSum& quadric);
 
   Decimation& all_;
@@ -57,6 +62,7 @@ class TileDecimation {
   const std::int32_t tile_;
   const PassPlan& plan_;
   BucketQueue<Edge> queue_;
+  OutlineIndex outline_;  // where it moves, of the tile's vertices
   EdgeStar star_;
   std::size_t faces_gone_ = 0, collapses_ = 0;
 };

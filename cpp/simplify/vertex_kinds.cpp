@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/vertex_kinds.h"
+
+namespace sightbound {
+
+namespace {
+
+bool is_straight(const PlanMesh& mesh, std::int32_t v, std::int32_t a, std::int32_t b) {
+  const Point p = mesh.place(v), p_a = mesh.place(a), p_b = mesh.place(b);
+  const bool ahead = (p_a.x - p.x) * (p_b.x - p.x) + (p_a.y - p.y) * (p_b.y - p.y) < 0;
+  return ahead && area2(p, p_a, p_b) == 0;
+}
+
+bool is_corner_of_raster(const PlanMesh& mesh, std::int32_t v, const KindRules& rules) {
+  const int row = mesh.step_y(v) / kStepsPerCell, col = mesh.step_x(v) / kStepsPerCell;
+  return (row == 0 || row == rules.rows - 1) && (col == 0 || col == rules.cols - 1);
+}
+
+// Of an end, a junction, or where a line meets the outline.
+constexpr VertexKind kEndOfLine = VertexKind::kCorner;
+
+}  // namespace
+
+VertexKind kind_of(const PlanMesh& mesh, std::int32_t v, const KindRules& rules) {
+  const std::int32_t first = mesh.first_corner(v);
+  const bool outline = mesh.on_outline(first);
+  int lines = 0;  // edges, those of the outline excepted
+  std::int32_t last = first, corner = first;
+  do {
+    if (!(outline && corner == first)) lines += mesh.line(PlanMesh::previous(corner)) != 0 ? 1 : 0;
+    last = corner;
+    corner = mesh.counterclockwise(corner);
+  } while (corner != PlanMesh::kNone && corner != first);
+  if (!outline) {
+    if (lines == 0) return VertexKind::kInside;
+    return lines == 2 ? VertexKind::kOnLine : kEndOfLine;
+  }
+  if (rules.keep_border) return VertexKind::kFixed;
+  if (lines > 0) return kEndOfLine;
+  const std::int32_t a = mesh.vertex(PlanMesh::next(first)), b = mesh.vertex(PlanMesh::previous(last));
+  if (is_straight(mesh, v, a, b)) return VertexKind::kOutline;
+  return rules.border_moves && !is_corner_of_raster(mesh, v, rules) ? VertexKind::kOnLine
+                                                                    : VertexKind::kCorner;
+}
+
+}  // namespace sightbound
