@@ -151,9 +151,38 @@ void Decimation::for_each_tile(const PassPlan& plan, const Tiles& tiles, Origina
 }
 
 void Decimation::compact() {
+  lead_followed_to_what_stays();
   const std::vector<std::int32_t> old = mesh_.compact();
   keep_only(old, states_);
   keep_only(old, quadrics_);
+  // Numbers stay in order.
+  for (std::int32_t& v : followed_) {
+    v = static_cast<std::int32_t>(std::lower_bound(old.begin(), old.end(), v) - old.begin());
+  }
+}
+
+void Decimation::forget_what_failed() {
+  for (State& state : states_) state.changed = pass_;
+}
+
+void Decimation::follow_vertices() {
+  followed_.resize(mesh_.vertices());
+  std::iota(followed_.begin(), followed_.end(), 0);
+}
+
+void Decimation::lead_followed_to_what_stays() {
+  if (followed_.empty()) return;
+  // What each vertex was drawn into in the end; chains are shortened as they are walked.
+  std::vector<std::int32_t> end(mesh_.vertices());
+  for (std::int32_t v = 0; at(v) < end.size(); ++v) {
+    end[at(v)] = mesh_.corner_of(v) == PlanMesh::kNone ? mesh_.drawn_into(v) : v;
+  }
+  for (std::int32_t& v : followed_) {
+    while (end[at(v)] != v) {
+      end[at(v)] = end[at(end[at(v)])];
+      v = end[at(v)];
+    }
+  }
 }
 
 std::size_t Decimation::bytes() const {

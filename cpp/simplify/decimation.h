@@ -42,7 +42,6 @@ class Decimation {
 
   const PlanMesh& mesh() const { return mesh_; }
   PlanMesh& mesh() { return mesh_; }
-  PlanMesh release() && { return std::move(mesh_); }  // and the rest with it
 
   // The whole mesh as one tile, with so many collapses at most.
   void pass(const PassPlan& plan, const Envelope& envelope, std::size_t most_collapses, Progress& progress);
@@ -55,6 +54,12 @@ class Decimation {
 
   // Gives back the memory of what went.
   void compact();
+  // All edges are worth trying again: the tolerance is another one.
+  void forget_what_failed();
+  // Remembers from now on where the vertices go that there are. The mesh is compact.
+  void follow_vertices();
+  // The vertex that each of them has been drawn into; where there was none to follow, empty. Compact.
+  const std::vector<std::int32_t>& followed() const { return followed_; }
   std::size_t bytes() const;
   // Makes room, this being so much of what there will be.
   void expect_of_all(double part);
@@ -81,6 +86,7 @@ class Decimation {
   Tiles begin_pass(const PassPlan& plan, const Originals& originals);
   Tiles assign_tiles(const PassPlan& plan, const Originals& originals);
   void freeze_seams();
+  void lead_followed_to_what_stays();
   void leave_to_next_pass(std::size_t tile);
   std::span<const std::int32_t> vertices_of(std::size_t tile) const;
   // f(tile, envelope) for all tiles that are wanted, in parallel.
@@ -91,6 +97,7 @@ class Decimation {
   PlanMesh mesh_;
   std::vector<State> states_;
   std::vector<Quadric> quadrics_;  // of vertices
+  std::vector<std::int32_t> followed_;
   std::uint16_t pass_ = 0;
   // Vertices by tile: those of tile t are members_[begin_[t]] to members_[begin_[t + 1]].
   std::vector<std::int32_t> begin_, members_;

@@ -26,7 +26,21 @@ void check_values(const DemWindow& read) {
   }
 }
 
+// Rounded down: a tolerance is never exceeded.
+void multiply(Grid<float>& tolerance, double factor) {
+  for (float& value : tolerance.values()) {
+    const double wanted = factor * static_cast<double>(value);
+    value = static_cast<float>(wanted);
+    if (static_cast<double>(value) > wanted) value = std::nextafter(value, 0.0F);
+  }
+}
+
 }  // namespace
+
+void Originals::set_factor(double factor) {
+  factor_ = factor;
+  part_.reset();
+}
 
 Originals::Part::Part(DemWindow read, double tolerance_m, const Window& where)
     : window(where), dem(std::move(read)), original(dem.heights, dem.tolerance, tolerance_m, where) {}
@@ -38,7 +52,8 @@ const Originals::Part& Originals::rows_of(int first_row, int last_row, Progress&
   if (static_cast<std::int64_t>(rows()) * cols() <= samples_at_once_) window = {0, 0, cols(), rows()};
   DemWindow read = dem_.read(window, progress);
   check_values(read);
-  part_.emplace(std::move(read), tolerance_m_, window);
+  if (factor_ != 1) multiply(read.tolerance, factor_);
+  part_.emplace(std::move(read), factor_ * tolerance_m_, window);
   rounding_ = std::max(rounding_, part_->original.rounding());
   return *part_;
 }

@@ -18,6 +18,9 @@ class Originals {
   Originals(DemWindows& dem, double tolerance_m, std::int64_t samples_at_once)
       : dem_(dem), tolerance_m_(tolerance_m), samples_at_once_(samples_at_once) {}
 
+  // All tolerances count so many times from now on.
+  void set_factor(double factor);
+
   int rows() const { return dem_.rows(); }
   int cols() const { return dem_.cols(); }
 
@@ -42,7 +45,7 @@ class Originals {
 
  private:
   DemWindows& dem_;
-  double tolerance_m_, rounding_ = 0;
+  double tolerance_m_, factor_ = 1, rounding_ = 0;
   std::int64_t samples_at_once_;
   std::optional<Part> part_;
 };

@@ -86,10 +86,10 @@ PassPlan plan_of(std::size_t n, const Decimation& decimation, const Originals& o
 }
 constexpr std::size_t kLeastPasses = 3, kMostPasses = 100;
 
-// Until little is gained.
+// Until little is gained. Advances `progress` by a share.
 void decimate(Decimation& decimation, Originals& originals, const SimplifyOptions& options,
-              const LineRules& lines, const Workers& workers, Progress& progress) {
-  double left = kShareOfPasses;
+              const LineRules& lines, double share, const Workers& workers, Progress& progress) {
+  double left = share;
   for (std::size_t n = 0; n < kMostPasses; ++n) {
     PassPlan plan = plan_of(n, decimation, originals, options.block, lines);
     plan.relax = true;
@@ -184,12 +184,36 @@ class DemInMemory final : public DemWindows {
   const Grid<std::uint8_t>& keep_;
 };
 
+// `before` and `after` number the mesh's vertices in two levels, `followed` says where those of the first
+// went.
+std::vector<std::int32_t> coarser(const std::vector<std::int32_t>& before, const SimplifiedTin& finer,
+                                  const std::vector<std::int32_t>& followed,
+                                  const std::vector<std::int32_t>& after) {
+  std::vector<std::int32_t> result(finer.tin.vertices.size());
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    result[static_cast<std::size_t>(before[v])] = after[static_cast<std::size_t>(followed[v])];
+  }
+  return result;
+}
+
+void check_factors(std::span<const double> factors, const SimplifyOptions& options) {
+  bool ascend = !factors.empty() && factors[0] == 1;
+  for (std::size_t n = 1; n < factors.size(); ++n) {
+    ascend = ascend && std::isfinite(factors[n]) && factors[n] > factors[n - 1];
+  }
+  if (!ascend) throw InvalidInput("Tolerances of a hierarchy have to grow from one to the next.");
+  if (factors.size() > 1 && (options.target_faces > 0 || options.target_bytes.most > 0))
+    throw InvalidInput("A hierarchy has no target: give several tolerances, or one and a target.");
+}
+
 }  // namespace
 
-SimplifiedTin simplify_dem(DemWindows& dem, const DemPlace& place, const SimplifyOptions& options,
-                           Progress& progress) {
+std::vector<SimplifiedTin> simplify_dem_levels(DemWindows& dem, const DemPlace& place,
+                                               const SimplifyOptions& options,
+                                               std::span<const double> factors, Progress& progress) {
   check_sides(dem.rows(), dem.cols());
   check(options);
+  check_factors(factors, options);
   const MemoryBudget budget(options.memory_bytes);
   const Workers workers(options.threads);
   Originals originals(dem, options.tolerance_m, options.samples_at_once);
@@ -209,24 +233,50 @@ SimplifiedTin simplify_dem(DemWindows& dem, const DemPlace& place, const Simplif
   BlocksDecimated done = decimate_blocks(originals, blocks, budget, workers, progress);
   if (done.faces_before == 0)
     throw InvalidInput("The DEM has no three samples side by side that are not nodata: it makes no surface.");
-  if (target.is_set()) {
-    decimate_to_target(done.left, target, originals, options, lines, workers, progress);
-  } else {
-    decimate(done.left, originals, options, lines, workers, progress);
+  Decimation& decimation = done.left;
+  std::vector<SimplifiedTin> levels;
+  std::vector<std::int32_t> number;  // of the mesh's vertices, in the last level
+  for (const double factor : factors) {
+    if (!levels.empty()) {
+      originals.set_factor(factor);
+      decimation.forget_what_failed();
+      decimation.follow_vertices();
+    }
+    if (target.is_set()) {
+      decimate_to_target(decimation, target, originals, options, lines, workers, progress);
+    } else {
+      const double share = kShareOfPasses / static_cast<double>(factors.size());
+      decimate(decimation, originals, options, lines, share, workers, progress);
+    }
+    WrittenTin written = written_tin(decimation.mesh(), place, originals, workers, progress);
+    written.made.report.faces_before = done.faces_before;
+    written.made.report.break_line_edges_lost = done.break_line_edges_lost;
+    written.made.report.kept_for_rounding_m = 2 * originals.rounding();
+    if (!levels.empty())
+      levels.back().coarser_vertex = coarser(number, levels.back(), decimation.followed(), written.number);
+    levels.push_back(std::move(written.made));
+    number = std::move(written.number);
   }
-  const PlanMesh mesh = std::exchange(done.left, {}).release();
-  SimplifiedTin result = written_tin(mesh, place, originals, workers, progress);
-  result.report.faces_before = done.faces_before;
-  result.report.break_line_edges_lost = done.break_line_edges_lost;
-  result.report.kept_for_rounding_m = 2 * originals.rounding();
-  return result;
+  return levels;
+}
+
+SimplifiedTin simplify_dem(DemWindows& dem, const DemPlace& place, const SimplifyOptions& options,
+                           Progress& progress) {
+  constexpr std::array<double, 1> kOnce{1};
+  return std::move(simplify_dem_levels(dem, place, options, kOnce, progress)[0]);
+}
+
+std::vector<SimplifiedTin> simplify_dem_levels(const DemTerrain& terrain, const SimplifyOptions& options,
+                                               std::span<const double> factors, Progress& progress) {
+  check_sides(terrain.heights.rows(), terrain.heights.cols());
+  DemInMemory dem(terrain.heights, options);
+  return simplify_dem_levels(dem, {terrain.geotransform, terrain.metres_per_unit, terrain.crs_wkt}, options,
+                             factors, progress);
 }
 
 SimplifiedTin simplify_dem(const DemTerrain& terrain, const SimplifyOptions& options, Progress& progress) {
-  check_sides(terrain.heights.rows(), terrain.heights.cols());
-  DemInMemory dem(terrain.heights, options);
-  return simplify_dem(dem, {terrain.geotransform, terrain.metres_per_unit, terrain.crs_wkt}, options,
-                      progress);
+  constexpr std::array<double, 1> kOnce{1};
+  return std::move(simplify_dem_levels(terrain, options, kOnce, progress)[0]);
 }
 
 }  // namespace sightbound

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,9 @@ struct SimplifiedTin {
   // largest on that face, metres, rounded up.
   Tin tin;
   SimplifyReport report;
+  // Of a hierarchy: the vertex of the next TIN, the coarser one, that each vertex was drawn into. Faces whose
+  // corners all become different ones are the faces of that TIN; the others have vanished. Empty in the last.
+  std::vector<std::int32_t> coarser_vertex;
 };
 
 // Reads the DEM as it goes along, some eight times, and holds a band of its rows, 11 MiB a thread, and 72
@@ -93,7 +97,14 @@ struct SimplifiedTin {
 // a tolerance of 5 m, 60 for 1 m (docs/performance.md). Advances `progress` by 1 in all.
 SimplifiedTin simplify_dem(DemWindows&, const DemPlace&, const SimplifyOptions&, Progress&);
 
+// A hierarchy: one TIN for each factor, within so many times the tolerance, each made from the one before.
+// The factors ascend and begin with 1; no target goes with them.
+std::vector<SimplifiedTin> simplify_dem_levels(DemWindows&, const DemPlace&, const SimplifyOptions&,
+                                               std::span<const double> factors, Progress&);
+
 // The same of a DEM in memory.
 SimplifiedTin simplify_dem(const DemTerrain&, const SimplifyOptions&, Progress&);
+std::vector<SimplifiedTin> simplify_dem_levels(const DemTerrain&, const SimplifyOptions&,
+                                               std::span<const double> factors, Progress&);
 
 }  // namespace sightbound

@@ -94,9 +94,10 @@ Deviation find_deviations(const PlanMesh& mesh, Originals& originals, std::vecto
 
 }  // namespace
 
-SimplifiedTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals& originals,
-                          const Workers& workers, Progress& progress) {
-  SimplifiedTin result;
+WrittenTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals& originals,
+                       const Workers& workers, Progress& progress) {
+  WrittenTin written;
+  SimplifiedTin& result = written.made;
   Tin& tin = result.tin;
   const Geotransform& map = place.geotransform;
   tin.crs_wkt = place.crs_wkt;
@@ -105,7 +106,8 @@ SimplifiedTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals
   tin.origin = {std::round(middle.x), std::round(middle.y), 0};
 
   std::vector<std::int32_t> vertices;
-  const std::vector<std::int32_t> number = number_vertices(mesh, vertices);
+  written.number = number_vertices(mesh, vertices);
+  const std::vector<std::int32_t>& number = written.number;
   tin.vertices.reserve(vertices.size());
   for (const std::int32_t v : vertices) {
     const Point p = mesh.place(v);
@@ -129,7 +131,7 @@ SimplifiedTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals
   result.report.faces_after = tin.faces.size();
   result.report.largest_deviation_m = largest.metres;
   result.report.largest_ratio = largest.ratio;
-  return result;
+  return written;
 }
 
 }  // namespace sightbound

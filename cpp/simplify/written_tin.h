@@ -2,6 +2,9 @@
 // From the mesh in raster coordinates to a TIN in those of the CRS.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "simplify/originals.h"
@@ -10,8 +13,13 @@
 
 namespace sightbound {
 
+struct WrittenTin {
+  SimplifiedTin made;
+  std::vector<std::int32_t> number;  // of each vertex of the mesh in the TIN
+};
+
 // Faces up, with the largest deviation of each; fills in what the report says of them. The mesh is compact.
-SimplifiedTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals& originals,
-                          const Workers& workers, Progress& progress);
+WrittenTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals& originals,
+                       const Workers& workers, Progress& progress);
 
 }  // namespace sightbound
