@@ -24,6 +24,12 @@ void set_keep(DemToTinOptions& options, const FloatArray& values, bool flipped) 
   options.keep = std::make_shared<const Grid<float>>(std::move(grid));
 }
 
+// `places`: (n, 2).
+void add_break_line(DemToTinOptions& options, const DoubleArray& places) {
+  std::vector<Xy>& line = options.break_lines.emplace_back();
+  for (py::ssize_t n = 0; n < places.shape(0); ++n) line.push_back({places.at(n, 0), places.at(n, 1)});
+}
+
 void bind_options(py::module_& m) {
   py::class_<DemToTinOptions>(m, "DemToTinOptions")
       .def(py::init<>())
@@ -33,10 +39,13 @@ void bind_options(py::module_& m) {
           [](DemToTinOptions& self, bool is) {
             self.error_means = is ? ErrorMeans::kTolerance : ErrorMeans::kConfidence;
           })
-      .def_readwrite("confidence", &DemToTinOptions::confidence)
+      .def_readwrite("levels", &DemToTinOptions::levels)
       .def_readwrite("extent", &DemToTinOptions::extent)
       .def("set_keep", &set_keep, py::arg("values").noconvert(), py::arg("flipped"))
       .def_readwrite("keep_border", &DemToTinOptions::keep_border)
+      .def_readwrite("border_tolerance", &DemToTinOptions::border_tolerance_m)
+      .def("add_break_line", &add_break_line, py::arg("places").noconvert())
+      .def_readwrite("break_line_tolerance", &DemToTinOptions::break_line_tolerance_m)
       .def_readwrite("target_faces", &DemToTinOptions::target_faces)
       .def_readwrite("target_bytes", &DemToTinOptions::target_bytes)
       .def_readwrite("target_ending", &DemToTinOptions::target_ending)
@@ -44,19 +53,30 @@ void bind_options(py::module_& m) {
       .def_readwrite("memory_budget", &DemToTinOptions::memory_budget);
 }
 
-py::tuple dem_to_tin(const std::shared_ptr<DemSource>& dem, const ErrorModel& model,
-                     const DemToTinOptions& options, const py::object& progress) {
+// For each level (TIN, report, vertex of the next level that each vertex was drawn into; None in the last).
+py::list dem_to_tin(const std::shared_ptr<DemSource>& dem, const ErrorModel& model,
+                    const DemToTinOptions& options, const py::object& progress) {
   using namespace py::literals;
   DemToTin made = ProgressBridge(progress).run(
       [&, given = model, used = options](Progress& p) { return run_dem_to_tin(*dem, given, used, p); });
-  const SimplifyReport& found = made.simplified.report;
-  py::dict report("faces_before"_a = found.faces_before, "faces_after"_a = found.faces_after,
-                  "largest_deviation"_a = found.largest_deviation_m, "largest_ratio"_a = found.largest_ratio,
-                  "least_tolerance"_a = made.least_tolerance_m,
-                  "largest_tolerance"_a = made.largest_tolerance_m, "error_model"_a = made.error_model,
-                  "warnings"_a = made.warnings);
-  auto tin = std::make_shared<RegularTin>(RegularTin{std::move(made.simplified.tin), {}});
-  return py::make_tuple(std::move(tin), std::move(report));
+  py::list levels;
+  for (std::size_t n = 0; n < made.levels.size(); ++n) {
+    SimplifiedTin& level = made.levels[n];
+    py::dict report("faces_before"_a = level.report.faces_before, "faces_after"_a = level.report.faces_after,
+                    "largest_deviation"_a = level.report.largest_deviation_m,
+                    "largest_ratio"_a = level.report.largest_ratio,
+                    "least_tolerance"_a = made.factors[n] * made.least_tolerance_m,
+                    "largest_tolerance"_a = made.factors[n] * made.largest_tolerance_m,
+                    "error_model"_a = made.error_model, "warnings"_a = made.warnings);
+    py::object coarser = py::none();
+    if (!level.coarser_vertex.empty()) {
+      coarser = py::array_t<std::int32_t>(static_cast<py::ssize_t>(level.coarser_vertex.size()),
+                                          level.coarser_vertex.data());
+    }
+    auto tin = std::make_shared<RegularTin>(RegularTin{std::move(level.tin), {}});
+    levels.append(py::make_tuple(std::move(tin), std::move(report), std::move(coarser)));
+  }
+  return levels;
 }
 
 py::tuple visibility_tolerance(const std::shared_ptr<DemSource>& dem, const std::vector<Observer>& observers,

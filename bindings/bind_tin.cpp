@@ -21,7 +21,6 @@ namespace sightbound::python {
 
 namespace {
 
-using Doubles = py::array_t<double, py::array::c_style>;
 using Indices = py::array_t<std::int32_t, py::array::c_style>;
 using Columns = std::map<std::string, FloatArray>;
 
@@ -31,7 +30,7 @@ using Held = std::shared_ptr<RegularTin>;
 static_assert(sizeof(Xyz) == 3 * sizeof(double) && sizeof(Face) == 3 * sizeof(std::int32_t),
               "arrays share their memory");
 
-std::vector<Xyz> places(const Doubles& rows) {
+std::vector<Xyz> places(const DoubleArray& rows) {
   const auto* first = reinterpret_cast<const Xyz*>(rows.data());
   return {first, first + rows.shape(0)};
 }
@@ -59,7 +58,7 @@ TinReadOptions options_of(const std::string& crs, const std::string& vertical_un
 }
 
 // Rows of `faces` end with -1 where they have fewer corners than others.
-Held from_arrays(const Doubles& vertices, const Indices& faces, const std::string& crs,
+Held from_arrays(const DoubleArray& vertices, const Indices& faces, const std::string& crs,
                  const std::optional<FloatArray>& sigma_v, const Columns& vertex_attributes,
                  const Columns& face_attributes, const std::string& vertical_unit) {
   TinSource source;
@@ -78,7 +77,7 @@ Held from_arrays(const Doubles& vertices, const Indices& faces, const std::strin
   return make(std::move(source), options_of(crs, vertical_unit), "The TIN", py::none());
 }
 
-Held from_points(const Doubles& points, const std::vector<Doubles>& breaklines, const std::string& crs,
+Held from_points(const DoubleArray& points, const std::vector<DoubleArray>& breaklines, const std::string& crs,
                  const std::optional<FloatArray>& sigma_v, const Columns& point_attributes,
                  double longest_edge, const std::string& vertical_unit, const py::object& progress) {
   TinSource source;
@@ -86,7 +85,7 @@ Held from_points(const Doubles& points, const std::vector<Doubles>& breaklines, 
   if (sigma_v) source.tin.sigma_v = values(*sigma_v);
   source.add_survey(places(points), [&] {
     std::vector<std::vector<Xyz>> lines;
-    for (const Doubles& line : breaklines) lines.push_back(places(line));
+    for (const DoubleArray& line : breaklines) lines.push_back(places(line));
     return lines;
   }());
   TinReadOptions options = options_of(crs, vertical_unit);

@@ -19,6 +19,7 @@
 namespace sightbound::python {
 
 using FloatArray = pybind11::array_t<float, pybind11::array::c_style>;
+using DoubleArray = pybind11::array_t<double, pybind11::array::c_style>;
 
 // Keeps a Python object alive for the core; may be dropped by any thread, with or without the GIL.
 inline std::shared_ptr<const void> keep_alive(pybind11::object object) {

@@ -22,9 +22,8 @@ from .feedback import until_cancelled
 from .text import tr
 from .values import given
 
-def places(name, label):
-    kinds = [QgsProcessing.SourceType.TypeVectorAnyGeometry]
-    return QgsProcessingParameterFeatureSource(name, label, kinds, None, True)
+def places(name, label, kind=QgsProcessing.SourceType.TypeVectorAnyGeometry):
+    return QgsProcessingParameterFeatureSource(name, label, [kind], None, True)
 
 
 def read_places(algorithm, parameters, name, context, feedback, dem):
@@ -55,6 +54,25 @@ def read_places(algorithm, parameters, name, context, feedback, dem):
     del writer  # closes the file
     algorithm.paths[path] = name
     return path
+
+
+def lines_in(path):
+    """Arrays (n, 2) of the lines of read_places(); None without a path. Any thread."""
+    if path is None:
+        return None
+    lines = []
+
+    def collect(geometry):
+        if geometry.GetGeometryCount() > 0:
+            for part in range(geometry.GetGeometryCount()):
+                collect(geometry.GetGeometryRef(part))
+        elif geometry.GetPointCount() > 1:
+            lines.append(numpy.array(geometry.GetPoints())[:, :2])
+
+    features = gdal.OpenEx(path, gdal.OF_VECTOR)  # its layer lasts as long
+    for feature in features.GetLayer(0):
+        collect(feature.GetGeometryRef().GetLinearGeometry())
+    return lines
 
 
 def samples_in(path, dem):

@@ -19,7 +19,7 @@ from .error_model import ErrorModel, terrain_table
 from .error_surfaces import ErrorSurfaces, error_surfaces
 from .hidden_volume import HiddenRasters, HiddenVolume
 from .line_of_sight import LineOfSight, line_of_sight, lines_of_sight
-from .simplify import SimplifiedTin, dem_to_tin, simplify
+from .simplify import SimplifiedTin, dem_to_tin, dem_to_tins, simplify
 from .tin import Tin, read_tin, tin_layers
 from .verification import Verification, verify
 from .viewshed import viewshed, viewsheds
@@ -58,6 +58,7 @@ __all__ = [
     "VolumeLayer",
     "defaults",
     "dem_to_tin",
+    "dem_to_tins",
     "error_surfaces",
     "estimate_error",
     "estimate_volume_viewshed",

@@ -147,6 +147,19 @@ def float_array(value: Any) -> FloatArray:
     return np.ascontiguousarray(value, dtype=np.float32)
 
 
+def polyline(name: str, value: Any) -> Any:
+    """(n, 2) float64 from n places (x, y), or (x, y, z) of which z does not count."""
+    import numpy as np
+
+    try:
+        places = np.ascontiguousarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} is {value!r}; it must be a sequence of (x, y).") from None
+    if places.ndim != 2 or places.shape[1] not in (2, 3):
+        raise ValueError(f"{name} has shape {places.shape}; it must be a sequence of (x, y).")
+    return np.ascontiguousarray(places[:, :2])
+
+
 def word(name: str, value: Any) -> str:
     """One of the core's words, which the core checks."""
     if not isinstance(value, str):

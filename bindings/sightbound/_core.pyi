@@ -321,10 +321,13 @@ def tin_layers(path: str) -> list[str]: ...
 
 class DemToTinOptions:
     error_is_tolerance: bool
-    confidence: float
+    levels: list[float]
     extent: Extent | None
     def set_keep(self, values: _Floats, flipped: bool) -> None: ...
     keep_border: bool
+    border_tolerance: float
+    def add_break_line(self, places: _Doubles) -> None: ...
+    break_line_tolerance: float | None
     target_faces: int
     target_bytes: float
     target_ending: str
@@ -342,7 +345,7 @@ def visibility_tolerance(
 ) -> tuple[_Floats, dict[str, Any]]: ...
 def dem_to_tin(
     dem: DemSource, model: ErrorModel, options: DemToTinOptions, progress: _Progress
-) -> tuple[Tin, dict[str, Any]]: ...
+) -> list[tuple[Tin, dict[str, Any], npt.NDArray[np.int32] | None]]: ...
 
 def verify_tin(
     original: Tin,

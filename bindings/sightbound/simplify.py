@@ -13,8 +13,10 @@ from .volume import model_of_tin, optional_length
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
     from typing import Any
 
+    import numpy as np
     import numpy.typing as npt
 
     from ._arguments import Box, FloatArray, Progress
@@ -27,9 +29,10 @@ _LARGEST = 10000.0  # metres, of tolerances as of errors
 class SimplifiedTin(Tin):
     """A TIN with a `report` on how it was made."""
 
-    __slots__ = ("_report",)
+    __slots__ = ("_coarser", "_report")
 
     _report: dict[str, Any]
+    _coarser: npt.NDArray[np.int32] | None
 
     @property
     def report(self) -> dict[str, Any]:
@@ -44,6 +47,13 @@ class SimplifiedTin(Tin):
         little goes there), fixed_vertices (where the surface is not manifold)."""
         return self._report
 
+    @property
+    def coarser_vertex(self) -> npt.NDArray[np.int32] | None:
+        """For each vertex the one of the next coarser TIN that it was drawn into (dem_to_tins()), shape (vertices,). Faces whose
+        corners become three different ones are the faces of that TIN; the others have vanished. None where there is no coarser
+        one."""
+        return self._coarser
+
 
 def dem_to_tin(
     dem: Dem,
@@ -54,6 +64,9 @@ def dem_to_tin(
     extent: Box | None = None,
     keep: npt.ArrayLike | None = None,
     keep_border: bool = False,
+    border_tolerance: float = 0.0,
+    break_lines: Iterable[Any] | None = None,
+    break_line_tolerance: float | None = None,
     target_faces: int | None = None,
     target_bytes: float | None = None,
     target_ending: str = "ply",
@@ -78,6 +91,11 @@ def dem_to_tin(
         extent: (x_min, y_min, x_max, y_max) in the DEM's CRS, snapped outward to its cells; None for the whole DEM.
         keep: array [rows, cols] on the DEM's grid, in its row order: samples that stay vertices, at their own height, where above 0.
         keep_border: keep all samples of the outline and of holes, so that neighbouring tiles fit.
+        border_tolerance: metres by which the outline, and that of holes, may move in plan (both ways); its vertices stay samples, the
+            corners of the DEM stay. Where it advances over nodata, heights are those of the triangles beside.
+        break_lines: polylines, each a sequence of (x, y) in the DEM's CRS, that stay edges of the TIN. Each follows the samples nearest
+            to it, at most a cell away; ends and junctions stay vertices.
+        break_line_tolerance: metres by which the edges may stray from these samples in plan; None for the longer side of a cell.
         target_faces: stop at that many faces (give or take one), the cheapest removed first; still within the tolerance, so that more
             may be left. None to remove all that can be.
         target_bytes: instead: stop as soon as the file that `write` makes of the TIN takes no more bytes; a warning tells when the
@@ -93,35 +111,64 @@ def dem_to_tin(
         MemoryError: the job would exceed the memory budget.
         Cancelled: progress returned False.
     """
-    if (tolerance is None) == (error_model is None):
-        raise ValueError("give either tolerance (metres) or error_model with vertical_rmse: how far the TIN may be from the DEM.")
-    options = core.DemToTinOptions()
-    options.error_is_tolerance = tolerance is not None
-    options.confidence = arguments.number("confidence", confidence)
-    options.extent = arguments.extent(extent)
-    if keep is not None:
-        options.set_keep(_like("keep", keep, dem), core_dem(dem).flipped)
-    options.keep_border = bool(keep_border)
+    options = _options(
+        dem, tolerance, error_model, extent, keep, keep_border, border_tolerance, break_lines, break_line_tolerance, threads, memory_budget
+    )
+    options.levels = [1.0] if error_model is None else [arguments.number("confidence", confidence)]
     options.target_faces = 0 if target_faces is None else _count(target_faces)
     if target_bytes is not None:
         if target_faces is not None:
             raise ValueError("target_bytes and target_faces say the same thing; give only one of them.")
         options.target_bytes = _bytes(target_bytes)
         options.target_ending = arguments.word("target_ending", target_ending).lower().lstrip(".")
-    options.threads = arguments.threads(threads)
-    options.memory_budget = arguments.memory_budget(memory_budget)
-    model = error_model if tolerance is None else _as_model(tolerance, dem)
-    try:
-        made, report = core.dem_to_tin(core_dem(dem), core_model(model, dem), options, progress)
-    except (ValueError, OSError) as error:
-        if tolerance is None:
-            raise
-        raise type(error)(_of_tolerance(str(error))) from None
-    if tolerance is not None:
-        report["error_model"] = None
-        report["warnings"] = [_of_tolerance(warning) for warning in report["warnings"]]
-    report["version"] = core.__version__
-    return _wrapped(made, report)
+    return _made(dem, tolerance, error_model, options, progress)[0]
+
+
+def dem_to_tins(
+    dem: Dem,
+    *,
+    tolerance: Quantity = None,
+    factors: Sequence[float] = (1.0, 2.0, 4.0),
+    error_model: ErrorModel | None = None,
+    confidences: Sequence[float] = (0.5, 0.8, 0.95),
+    extent: Box | None = None,
+    keep: npt.ArrayLike | None = None,
+    keep_border: bool = False,
+    border_tolerance: float = 0.0,
+    break_lines: Iterable[Any] | None = None,
+    break_line_tolerance: float | None = None,
+    threads: int | None = None,
+    memory_budget: float | None = None,
+    progress: Progress | None = None,
+) -> list[SimplifiedTin]:
+    """Makes a hierarchy of TINs in one run, from the finest to the coarsest, each of the one before by collapses alone.
+
+    Each stays within its own tolerance of the DEM as dem_to_tin() promises, and its `coarser_vertex` says which vertex of the next
+    one each of its vertices was drawn into. All take some 1.1 times the triangles of a run of their own.
+
+    Args:
+        tolerance: as of dem_to_tin(), of the finest.
+        factors: by which the tolerances of the TINs are larger; they ascend and begin with 1.
+        confidences: of the error, one for each TIN, ascending.
+        dem, error_model, extent, keep, keep_border, border_tolerance, break_lines, break_line_tolerance, threads, memory_budget,
+            progress: as of dem_to_tin().
+
+    Raises:
+        As dem_to_tin().
+    """
+    options = _options(
+        dem, tolerance, error_model, extent, keep, keep_border, border_tolerance, break_lines, break_line_tolerance, threads, memory_budget
+    )
+    name, given = ("factors", factors) if error_model is None else ("confidences", confidences)
+    levels = arguments.listed(given)
+    if not levels:
+        raise ValueError(f"{name} is {given!r}; give a number for each TIN.")
+    options.levels = [arguments.number(name, level) for level in levels]
+    if error_model is None and options.levels[0] != 1:
+        raise ValueError(f"factors is {given!r}; it must begin with 1: the tolerance is that of the finest TIN.")
+    if any(finer >= coarser for finer, coarser in zip(options.levels, options.levels[1:])):
+        raise ValueError(f"{name} is {given!r}; each must be larger than the one before.")
+    return _made(dem, tolerance, error_model, options, progress)
 
 
 def simplify(
@@ -190,6 +237,57 @@ def simplify(
     return _wrapped(made, report)
 
 
+def _options(
+    dem: Dem,
+    tolerance: Quantity,
+    error_model: ErrorModel | None,
+    extent: Box | None,
+    keep: npt.ArrayLike | None,
+    keep_border: bool,
+    border_tolerance: float,
+    break_lines: Iterable[Any] | None,
+    break_line_tolerance: float | None,
+    threads: int | None,
+    memory_budget: float | None,
+) -> core.DemToTinOptions:
+    if (tolerance is None) == (error_model is None):
+        raise ValueError("give either tolerance (metres) or error_model with vertical_rmse: how far the TIN may be from the DEM.")
+    options = core.DemToTinOptions()
+    options.error_is_tolerance = tolerance is not None
+    options.extent = arguments.extent(extent)
+    if keep is not None:
+        options.set_keep(_like("keep", keep, dem), core_dem(dem).flipped)
+    options.keep_border = bool(keep_border)
+    options.border_tolerance = arguments.number("border_tolerance", border_tolerance)
+    for number, line in enumerate(break_lines if break_lines is not None else (), 1):
+        options.add_break_line(arguments.polyline(f"break_lines: line {number}", line))
+    if break_line_tolerance is not None:
+        options.break_line_tolerance = arguments.number("break_line_tolerance", break_line_tolerance)
+    options.threads = arguments.threads(threads)
+    options.memory_budget = arguments.memory_budget(memory_budget)
+    return options
+
+
+def _made(
+    dem: Dem, tolerance: Quantity, error_model: ErrorModel | None, options: core.DemToTinOptions, progress: Progress | None
+) -> list[SimplifiedTin]:
+    model = error_model if tolerance is None else _as_model(tolerance, dem)
+    try:
+        levels = core.dem_to_tin(core_dem(dem), core_model(model, dem), options, progress)
+    except (ValueError, OSError) as error:
+        if tolerance is None:
+            raise
+        raise type(error)(_of_tolerance(str(error))) from None
+    tins = []
+    for made, report, coarser in levels:
+        if tolerance is not None:
+            report["error_model"] = None
+            report["warnings"] = [_of_tolerance(warning) for warning in report["warnings"]]
+        report["version"] = core.__version__
+        tins.append(_wrapped(made, report, coarser))
+    return tins
+
+
 def _kept(given: Any, vertices: int) -> Any:
     values = arguments.float_array(given)
     if values.shape != (vertices,):
@@ -234,8 +332,9 @@ def _bytes(target: Any) -> float:
     return bytes_
 
 
-def _wrapped(made: core.Tin, report: dict[str, Any]) -> SimplifiedTin:
+def _wrapped(made: core.Tin, report: dict[str, Any], coarser: npt.NDArray[np.int32] | None = None) -> SimplifiedTin:
     tin = SimplifiedTin.__new__(SimplifiedTin)
     tin._core = made
     tin._report = report
+    tin._coarser = coarser
     return tin

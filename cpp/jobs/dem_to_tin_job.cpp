@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "jobs/dem_to_tin_job.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -16,15 +17,43 @@ namespace sightbound {
 
 namespace {
 
+constexpr double kDefaultConfidence = 0.95;
+
 // metres that one sigma_s stands for.
-double factor_of(const DemToTinOptions& options) {
-  return options.error_means == ErrorMeans::kTolerance ? 1 : two_sided_quantile(options.confidence);
+double metres_of(const DemToTinOptions& options, double level) {
+  return options.error_means == ErrorMeans::kTolerance ? level : two_sided_quantile(level);
+}
+
+double first_level(const DemToTinOptions& options) {
+  if (!options.levels.empty()) return options.levels[0];
+  return options.error_means == ErrorMeans::kTolerance ? 1 : kDefaultConfidence;
+}
+
+std::vector<double> factors_of(const DemToTinOptions& options) {
+  const double first = metres_of(options, first_level(options));
+  std::vector<double> factors{1};
+  for (std::size_t n = 1; n < options.levels.size(); ++n)
+    factors.push_back(metres_of(options, options.levels[n]) / first);
+  return factors;
+}
+
+// As edges of the TIN of a window, and how far each may be from them.
+void set_break_lines(const DemToTinOptions& options, const DemPlace& place, const Window& window,
+                     SimplifyOptions& simplify) {
+  std::vector<std::vector<Xy>> lines = options.break_lines;
+  for (std::vector<Xy>& line : lines) {
+    for (Xy& p : line) p = place.geotransform.to_raster(p.x, p.y);
+  }
+  simplify.break_lines = line_chains(lines, window.rows, window.cols);
+  const auto& g = place.geotransform.coefficients();
+  const double cell = std::max(std::hypot(g[1], g[4]), std::hypot(g[2], g[5])) * place.metres_per_unit;
+  simplify.break_line_tolerance_m = options.break_line_tolerance_m.value_or(cell);
 }
 
 constexpr double kMuchForRounding = 0.01;  // of the tolerance
 
 void say_what_stays(DemToTin& result) {
-  const double kept = result.simplified.report.kept_for_rounding_m;
+  const double kept = result.levels[0].report.kept_for_rounding_m;
   if (kept > kMuchForRounding * result.least_tolerance_m && result.least_tolerance_m > kLeastSigma) {
     result.warnings.push_back(
         "Rounding takes " + number_text(kept) +
@@ -51,7 +80,7 @@ SimplifyOptions::Bytes bytes_for(const DemToTinOptions& options, const DemSource
 }
 
 void say_what_it_takes(const SimplifyOptions::Bytes& target, DemToTin& result) {
-  const Tin& tin = result.simplified.tin;
+  const Tin& tin = result.levels[0].tin;
   const double bytes = target.of_vertex * static_cast<double>(tin.vertices.size()) +
                        target.of_face * static_cast<double>(tin.faces.size());
   if (bytes <= target.most) return;
@@ -59,33 +88,44 @@ void say_what_it_takes(const SimplifyOptions::Bytes& target, DemToTin& result) {
                             " bytes more than target_bytes: the tolerance lets no more triangles go.");
 }
 
+void say_what_was_lost(const SimplifyOptions& simplify, DemToTin& result) {
+  const std::size_t lost = result.levels[0].report.break_line_edges_lost, all = simplify.break_lines.size();
+  if (lost > 0) {
+    result.warnings.push_back(std::to_string(lost) + " of " + std::to_string(all) +
+                              " cells along the break lines have no terrain; the lines have gaps there.");
+  }
+}
+
 }  // namespace
 
 DemToTin run_dem_to_tin(const DemSource& source, const ErrorModel& model, const DemToTinOptions& options,
                         Progress& progress) {
-  const double factor = factor_of(options);
+  DemToTin result;
+  result.factors = factors_of(options);
   model.validate();
   const double metres_per_unit = metres_per_plan_unit(source.crs_wkt());
   const Window window = window_of(options.extent, source);
   const Workers workers(options.threads);
 
-  DemToTin result;
   progress.begin(0.03, 1);
   const ErrorModel completed = complete_model(model, source, result.warnings, progress);
   result.error_model = completed.describe();
-  ToleranceWindows windows(source, window, completed, factor, options.keep, workers);
+  ToleranceWindows windows(source, window, completed, metres_of(options, first_level(options)), options.keep,
+                           workers);
 
   SimplifyOptions simplify;
   simplify.tolerance_m = windows.constant();
   simplify.keep_border = options.keep_border;
+  simplify.border_tolerance_m = options.border_tolerance_m;
   simplify.target_faces = options.target_faces;
   if (options.target_bytes != 0) simplify.target_bytes = bytes_for(options, source);
   simplify.threads = options.threads;
   simplify.memory_bytes = options.memory_budget;
   const DemPlace place{source.geotransform().of_window(window), metres_per_unit,
                        horizontal_crs(source.crs_wkt())};
+  set_break_lines(options, place, window, simplify);
   progress.begin(0.97, 1);
-  result.simplified = simplify_dem(windows, place, simplify, progress);
+  result.levels = simplify_dem_levels(windows, place, simplify, result.factors, progress);
   result.least_tolerance_m = windows.least();
   result.largest_tolerance_m = windows.largest();
   const std::vector<std::string> holes = windows.warnings();
@@ -93,6 +133,7 @@ DemToTin run_dem_to_tin(const DemSource& source, const ErrorModel& model, const 
   const std::vector<std::string> notes = source.notes();  // reading adds to them
   result.warnings.insert(result.warnings.begin(), notes.begin(), notes.end());
   say_what_stays(result);
+  say_what_was_lost(simplify, result);
   if (options.target_bytes != 0) say_what_it_takes(simplify.target_bytes, result);
   progress.finish();
   return result;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole job: a DEM to the smallest TIN that stays within its error, or within a tolerance.
+// A whole job: a DEM to the smallest TIN that stays within its error, or within a tolerance; or to several,
+// each made from the one before.
 #pragma once
 
 #include <cstddef>
@@ -22,11 +23,18 @@ enum class ErrorMeans { kConfidence, kTolerance };
 
 struct DemToTinOptions {
   ErrorMeans error_means = ErrorMeans::kConfidence;
-  double confidence = 0.95;      // with kConfidence
+  // Confidences, or with kTolerance multiples of the tolerance beginning with 1: a TIN for each. They ascend.
+  // Empty: one TIN, at 0.95 or within the tolerance.
+  std::vector<double> levels;
   std::optional<Extent> extent;  // snapped outward to the DEM's grid; empty = the whole DEM
   SharedGrid
       keep;  // on the grid of the whole DEM: samples that stay vertices at their own height where above 0
-  bool keep_border = false;           // all samples of the outline and of holes stay: neighbouring tiles fit
+  bool keep_border = false;       // all samples of the outline and of holes stay: neighbouring tiles fit
+  double border_tolerance_m = 0;  // by which the outline may move in plan
+  // Polylines in the DEM's CRS that the TIN carries as edges, each within a tolerance in plan of the samples
+  // that follow the line; empty: of a cell's longer side.
+  std::vector<std::vector<Xy>> break_lines;
+  std::optional<double> break_line_tolerance_m;
   std::int64_t target_faces = 0;      // 0 = until nothing can be removed
   double target_bytes = 0;            // of the file; 0 = no such target
   std::string target_ending = "ply";  // of the file that target_bytes is for (tin_writer.h)
@@ -35,8 +43,9 @@ struct DemToTinOptions {
 };
 
 struct DemToTin {
-  SimplifiedTin simplified;
-  double least_tolerance_m = 0, largest_tolerance_m = 0;  // at the samples
+  std::vector<SimplifiedTin> levels;
+  double least_tolerance_m = 0, largest_tolerance_m = 0;  // of the first level, at the samples
+  std::vector<double> factors;                            // by which those of each level are larger
   std::string error_model;                                // JSON of what was used
   std::vector<std::string> warnings;
 };

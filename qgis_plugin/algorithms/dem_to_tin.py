@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """DEM to TIN: few triangles that stay within the terrain's error, or within a tolerance, at every place."""
 
-from qgis.core import QgsProcessingParameterBoolean
+from qgis.core import QgsProcessing, QgsProcessingParameterBoolean
 
 from .. import parameters as blocks
 from ..error_block import check_error_block, read_error_block
 from ..feedback import Progress
 from ..observers import HEIGHTS, read_points
-from ..places_on_dem import distances_from, places, read_places, samples_in
+from ..places_on_dem import distances_from, lines_in, places, read_places, samples_in
 from ..rasters import open_dem, read_extent, read_raster
 from ..text import tr
 from ..values import given, number_or_none, word
@@ -33,6 +33,9 @@ class DemToTin(TinMaker):
         faces = blocks.number("TARGET_TRIANGLES", tr("Stop at so many triangles"), None, 1, None, integer=True)
         size = blocks.number("TARGET_SIZE", tr("Stop at a file of so many megabytes"), None, 0.001)
         growth = blocks.number("FOCUS_GROWTH", tr("Growth of the tolerance, metres for each kilometre"), None, 0.0)
+        lines = places("BREAK_LINES", tr("Break lines: edges of the TIN"), QgsProcessing.SourceType.TypeVectorLine)
+        stray = blocks.metres("BREAK_LINE_TOLERANCE", tr("How far edges may stray from break lines (m; empty: a cell)"))
+        outline = blocks.metres("BORDER_TOLERANCE", tr("How far the outline may move in plan (m; empty: not at all)"))
         for parameter in (
             blocks.dem_block()
             + [
@@ -45,11 +48,14 @@ class DemToTin(TinMaker):
                 blocks.advanced(places("FOCUS", tr("Area of focus: the tolerance grows with the distance from it"))),
                 blocks.advanced(growth),
                 blocks.advanced(places("KEEP", tr("Places to keep at full resolution"))),
+                blocks.advanced(lines),
+                blocks.advanced(stray),
                 blocks.advanced(blocks.points("OBSERVERS", tr("Observers whose view must stay"), optional=True)),
             ]
             + [blocks.advanced(height) for height in blocks.height_block()]
             + [
                 blocks.advanced(border),
+                blocks.advanced(outline),
                 blocks.advanced(faces),
                 blocks.advanced(size),
                 blocks.vertical_unit_parameter(),
@@ -74,6 +80,10 @@ class DemToTin(TinMaker):
             return tr("TOLERANCE: say how far the TIN may be from the elevation model, here or as VERTICAL_ACCURACY.")
         if given(parameters, "TARGET_TRIANGLES") and given(parameters, "TARGET_SIZE"):
             return tr("TARGET_SIZE: TARGET_TRIANGLES says the same thing; give only one of them.")
+        if given(parameters, "BREAK_LINE_TOLERANCE") and not given(parameters, "BREAK_LINES"):
+            return tr("BREAK_LINE_TOLERANCE: give the BREAK_LINES too.")
+        if given(parameters, "BORDER_TOLERANCE") and self.parameterAsBoolean(parameters, "KEEP_BORDER", context):
+            return tr("BORDER_TOLERANCE: KEEP_BORDER keeps the outline where it is; give only one of them.")
         if given(parameters, "FOCUS") != given(parameters, "FOCUS_GROWTH"):
             return tr("FOCUS_GROWTH: give it together with FOCUS, or none of the two.")
         if given(parameters, "FOCUS") and not given(parameters, "TOLERANCE"):
@@ -87,8 +97,8 @@ class DemToTin(TinMaker):
         self.tolerance = raster.path if raster else number_or_none(self, parameters, "TOLERANCE", context)
         self.error = read_error_block(self, parameters, context, feedback, self.dem)
         self.extent = read_extent(self, parameters, context, self.dem)
-        self.keep, self.focus = (
-            read_places(self, parameters, name, context, feedback, self.dem) for name in ("KEEP", "FOCUS")
+        self.keep, self.focus, self.break_lines = (
+            read_places(self, parameters, name, context, feedback, self.dem) for name in ("KEEP", "FOCUS", "BREAK_LINES")
         )
         self.growth = number_or_none(self, parameters, "FOCUS_GROWTH", context)
         self.observers = []
@@ -109,6 +119,9 @@ class DemToTin(TinMaker):
             extent=self.extent,
             keep=samples_in(self.keep, self.dem),
             keep_border=self.parameterAsBoolean(parameters, "KEEP_BORDER", context),
+            border_tolerance=number_or_none(self, parameters, "BORDER_TOLERANCE", context) or 0.0,
+            break_lines=lines_in(self.break_lines),
+            break_line_tolerance=number_or_none(self, parameters, "BREAK_LINE_TOLERANCE", context),
             target_faces=None if faces is None else int(faces),
             target_bytes=None if megabytes is None else megabytes * 1e6,
             target_ending=self._ending(parameters, context),

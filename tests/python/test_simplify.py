@@ -143,6 +143,72 @@ def test_kept_samples_stay_vertices(dem):
         assert len(tin.faces) > len(sb.dem_to_tin(one, tolerance=5.0).faces)
 
 
+def edges_of(tin):
+    pairs = np.sort(np.concatenate([tin.faces[:, [0, 1]], tin.faces[:, [1, 2]], tin.faces[:, [2, 0]]]), axis=1)
+    return np.unique(pairs, axis=0, return_counts=True)
+
+
+def test_break_lines_stay_edges(dem):
+    y = NORTH - 20.5 * CELL  # along a row of samples
+    ends = WEST + 5.5 * CELL, WEST + 40.5 * CELL
+    tin = sb.dem_to_tin(dem, tolerance=100, break_lines=[[(ends[0], y), (ends[1], y)]], break_line_tolerance=0)
+    a, b = (tin.vertices[edges_of(tin)[0][:, n]] for n in (0, 1))
+    along = (np.abs(a[:, 1] - y) < 1e-6) & (np.abs(b[:, 1] - y) < 1e-6)
+    covered = np.sort(np.concatenate([a[along, 0], b[along, 0]]))
+    assert covered[0] == pytest.approx(ends[0]) and covered[-1] == pytest.approx(ends[1])
+    assert np.abs(a[along, 0] - b[along, 0]).sum() == pytest.approx(ends[1] - ends[0])
+    assert len(sb.dem_to_tin(dem, tolerance=100).faces) < len(tin.faces)
+
+
+def test_a_break_line_off_the_terrain_is_told_of():
+    heights = hills()
+    heights[:, 20] = np.nan
+    line = [(WEST + 3 * CELL, NORTH - 200), (WEST + 50 * CELL, NORTH - 200)]
+    tin = sb.dem_to_tin(dem_of(heights), tolerance=5, break_lines=[line])
+    assert any("break lines have no terrain" in warning for warning in tin.report["warnings"])
+
+
+def test_outlines_move_within_their_tolerance():
+    y, x = np.mgrid[:60, :60]
+    coast = hills(60, 60)
+    coast[np.hypot(x - 30, y - 28) > 25 + 2 * np.sin(5 * np.arctan2(y - 28, x - 30))] = np.nan
+    outline = {}
+    for tolerance in (0, 15):
+        tin = sb.dem_to_tin(dem_of(coast), tolerance=5, border_tolerance=tolerance)
+        edges, count = edges_of(tin)
+        outline[tolerance] = tin.vertices[edges[count == 1]]
+    assert len(outline[15]) < 0.5 * len(outline[0])
+    a, b = (outline[15][None, :, n, :2] for n in (0, 1))
+    p = outline[0][:, None, 0, :2]
+    t = np.clip(((p - a) * (b - a)).sum(2) / ((b - a) ** 2).sum(2), 0, 1)[..., None]
+    assert np.linalg.norm(p - a - t * (b - a), axis=2).min(axis=1).max() <= 15
+
+
+def test_several_confidences_give_nested_tins(dem):
+    tins = sb.dem_to_tins(dem, error_model=sb.ErrorModel(vertical_rmse=1), confidences=[0.5, 0.8, 0.95])
+    assert [len(tin.faces) for tin in tins] == sorted((len(tin.faces) for tin in tins), reverse=True)
+    assert tins[0].report["largest_tolerance"] == pytest.approx(0.6745, abs=1e-3)
+    assert tins[2].report["largest_tolerance"] == pytest.approx(1.96, abs=1e-3)
+    assert tins[-1].coarser_vertex is None
+    for finer, coarser in zip(tins, tins[1:]):
+        assert finer.report["largest_ratio"] <= 1
+        drawn = finer.coarser_vertex[finer.faces]
+        left = drawn[(drawn[:, 0] != drawn[:, 1]) & (drawn[:, 1] != drawn[:, 2]) & (drawn[:, 2] != drawn[:, 0])]
+        assert {tuple(np.roll(f, -f.argmin())) for f in left} == {tuple(np.roll(f, -f.argmin())) for f in coarser.faces}
+        assert len(left) == len(coarser.faces)
+
+
+def test_tolerances_of_a_hierarchy_grow(dem):
+    tins = sb.dem_to_tins(dem, tolerance=1, factors=[1, 3])
+    assert tins[0].faces.tolist() == sb.dem_to_tin(dem, tolerance=1).faces.tolist()
+    assert 1 < tins[1].report["largest_deviation"] <= 3
+    for factors in ([], [2, 3], [1, 1], [1, "x"]):
+        with pytest.raises(ValueError, match="factors"):
+            sb.dem_to_tins(dem, tolerance=1, factors=factors)
+    with pytest.raises(ValueError, match="confidences"):
+        sb.dem_to_tins(dem, error_model=sb.ErrorModel(vertical_rmse=1), confidences=[0.9, 0.5])
+
+
 def test_it_stops_at_a_number_of_faces(dem):
     tin = sb.dem_to_tin(dem, tolerance=50.0, target_faces=500)
     assert 498 <= len(tin.faces) <= 502 and tin.report["largest_deviation"] < 50
@@ -192,6 +258,12 @@ def test_it_can_be_cancelled(dem):
     ({"tolerance": 1.0, "target_bytes": 1e5, "target_faces": 7}, "only one of them"),
     ({"tolerance": 1.0, "target_bytes": 1e5, "target_ending": "shp"}, "ends in 'shp'"),
     ({"tolerance": 1.0, "keep": np.ones((3, 3))}, "keep has shape"),
+    ({"tolerance": 1.0, "border_tolerance": -1}, "border_tolerance is -1"),
+    ({"tolerance": 1.0, "border_tolerance": 1, "keep_border": True}, "keep_border"),
+    ({"tolerance": 1.0, "break_line_tolerance": float("nan")}, "break_line_tolerance"),
+    ({"tolerance": 1.0, "break_lines": [[(0, 0), (np.nan, 1)]]}, "break_lines: line 1"),
+    ({"tolerance": 1.0, "break_lines": [[(0, 0), (1, 1)], [1, 2]]}, "break_lines: line 2 has shape"),
+    ({"tolerance": 1.0, "break_lines": ["x"]}, "break_lines: line 1"),
     ({"error_model": sb.ErrorModel(1, 0, 0), "confidence": 1.0}, "confidence"),
 ])
 def test_wrong_arguments_are_named(dem, arguments, message):

@@ -6,6 +6,8 @@ import json
 import pytest
 import scenes
 from qgis.core import (
+    QgsFeature,
+    QgsGeometry,
     QgsMesh,
     QgsMeshLayer,
     QgsPointXY,
@@ -14,6 +16,7 @@ from qgis.core import (
     QgsProcessingUtils,
     QgsProject,
     QgsRectangle,
+    QgsVectorLayer,
 )
 
 
@@ -103,6 +106,40 @@ def test_places_to_keep(run, dem, observers, tmp_path):
     assert extent.xMinimum() == scenes.WEST + 5 and extent.yMaximum() == scenes.NORTH - 5
 
 
+def test_break_lines_stay_edges(run, dem, tmp_path):
+    y = scenes.NORTH - 10.5 * scenes.CELL
+    ends = [(scenes.WEST + c * scenes.CELL, y) for c in (4.5, 30.5)]
+    lines = QgsVectorLayer("LineString?crs=EPSG:32633", "lines", "memory")
+    feature = QgsFeature()
+    feature.setGeometry(QgsGeometry.fromPolylineXY([QgsPointXY(*end) for end in ends]))
+    lines.dataProvider().addFeatures([feature])
+    found = simplify(run, dem, tmp_path, TOLERANCE=50.0, BREAK_LINES=lines, BREAK_LINE_TOLERANCE=0.0)
+    mesh = QgsMeshLayer(found["OUTPUT"], "tin", "mdal")
+    triangles = QgsMesh()
+    mesh.dataProvider().populateMesh(triangles)
+    along = 0.0
+    for n in range(triangles.faceCount()):
+        face = [triangles.vertex(v) for v in triangles.face(n)]
+        for a, b in zip(face, face[1:] + face[:1]):
+            if abs(a.y() - y) < 1e-3 and abs(b.y() - y) < 1e-3:
+                along += abs(a.x() - b.x()) / 2
+    assert along == pytest.approx(26 * scenes.CELL)
+    assert simplify(run, dem, tmp_path, TOLERANCE=50.0)["TRIANGLES"] < found["TRIANGLES"]
+
+
+def test_the_outline_moves_where_it_may(run, tmp_path):
+    heights = scenes.hills()
+    rows, cols = heights.shape
+    for row in range(rows):
+        heights[row, : row * cols // (2 * rows)] = float("nan")
+    path = str(tmp_path / "coast.tif")
+    transform = (scenes.WEST, scenes.CELL, 0, scenes.NORTH, 0, -scenes.CELL)
+    scenes.write_raster(path, heights, transform, scenes.UTM)
+    still = simplify(run, path, tmp_path, TOLERANCE=20.0)
+    moved = simplify(run, path, tmp_path, TOLERANCE=20.0, BORDER_TOLERANCE=scenes.CELL)
+    assert moved["TRIANGLES"] < 0.6 * still["TRIANGLES"]
+
+
 @pytest.mark.parametrize("parameters", [{"KEEP": 0}, {"FOCUS": 0, "FOCUS_GROWTH": 1.0}])
 def test_places_beside_the_elevation_model_are_refused(run, dem, tmp_path, parameters):
     beside = str(scenes.write_points(tmp_path / "beside.gpkg", [(scenes.WEST - 5000.0, scenes.NORTH, {})], {}))
@@ -135,6 +172,8 @@ def vertices(path):
     ({"VERTICAL_ACCURACY": 1.0}, "TOLERANCE: the accuracy"),
     ({"TOLERANCE": None, "VERTICAL_ACCURACY": 1.0, "CONFIDENCE": 1.0}, "CONFIDENCE"),
     ({"FOCUS_GROWTH": 1.0}, "FOCUS_GROWTH: give it together"),
+    ({"BREAK_LINE_TOLERANCE": 1.0}, "BREAK_LINE_TOLERANCE: give the BREAK_LINES"),
+    ({"BORDER_TOLERANCE": 1.0, "KEEP_BORDER": True}, "BORDER_TOLERANCE: KEEP_BORDER"),
     ({"OUTPUT": "/nowhere/tin.ply"}, "OUTPUT"),
     ({"OUTPUT": "tin.xyz"}, "OUTPUT"),
 ])

@@ -47,12 +47,12 @@ class Waves {
 };
 
 TEST(DemToTin, TheToleranceIsSigmaAtTheConfidence) {
-  const DemToTin made = Waves().tin(error(0.5), {.confidence = 0.95});
+  const DemToTin made = Waves().tin(error(0.5));  // 0.95
   EXPECT_NEAR(made.least_tolerance_m, 0.98, 0.001);
   EXPECT_EQ(made.least_tolerance_m, made.largest_tolerance_m);
-  EXPECT_LE(made.simplified.report.largest_deviation_m, made.largest_tolerance_m);
-  EXPECT_GT(made.simplified.report.largest_deviation_m, 0.5);
-  EXPECT_LT(made.simplified.report.faces_after, made.simplified.report.faces_before / 2);
+  EXPECT_LE(made.levels[0].report.largest_deviation_m, made.largest_tolerance_m);
+  EXPECT_GT(made.levels[0].report.largest_deviation_m, 0.5);
+  EXPECT_LT(made.levels[0].report.faces_after, made.levels[0].report.faces_before / 2);
   ASSERT_EQ(made.warnings.size(), 1u);
   EXPECT_TRUE(says(made.warnings[0], "CRS"));  // it has none
   DemToTinOptions itself;
@@ -66,15 +66,15 @@ TEST(DemToTin, SlopesCountWherePositionsAreInDoubt) {
   const DemToTin made = Waves().tin(model);
   EXPECT_LT(made.least_tolerance_m, 0.9 * made.largest_tolerance_m);
   EXPECT_GE(made.least_tolerance_m, 0.2 * 1.9599);
-  EXPECT_LE(made.simplified.report.largest_ratio, 1);
+  EXPECT_LE(made.levels[0].report.largest_ratio, 1);
 }
 
 TEST(DemToTin, APartIsThatPart) {
   DemToTinOptions options;
   options.extent = Extent{1100, 2050, 1200, 2150};
   const DemToTin part = Waves().tin(error(0.5), options);
-  EXPECT_EQ(part.simplified.report.faces_before, 2u * 9 * 9);
-  const Tin& tin = part.simplified.tin;
+  EXPECT_EQ(part.levels[0].report.faces_before, 2u * 9 * 9);
+  const Tin& tin = part.levels[0].tin;
   const Box3 box = bounds_of(tin);
   EXPECT_EQ(tin.to_crs(box.low).x, 1105);
   EXPECT_EQ(tin.to_crs(box.high).y, 2145);
@@ -98,12 +98,48 @@ TEST(DemToTin, AnAbsurdHeightIsToldOf) {
   EXPECT_TRUE(told);
 }
 
+TEST(DemToTin, SeveralConfidencesGiveNestedTins) {
+  DemToTinOptions options;
+  options.levels = {0.5, 0.8, 0.95};
+  const DemToTin made = Waves().tin(error(0.5), options);
+  ASSERT_EQ(made.levels.size(), 3U);
+  for (std::size_t n = 0; n < 3; ++n) {
+    const double tolerance = 0.5 * two_sided_quantile(options.levels[n]);
+    EXPECT_NEAR(made.factors[n] * made.least_tolerance_m, tolerance, 1e-6);
+    EXPECT_LE(made.levels[n].report.largest_deviation_m, tolerance);
+    EXPECT_EQ(made.levels[n].coarser_vertex.empty(), n == 2);
+  }
+  EXPECT_LT(made.levels[2].tin.faces.size(), made.levels[0].tin.faces.size());
+  options.levels = {0.8, 0.5};
+  EXPECT_THROW(Waves().tin(error(0.5), options), InvalidInput);
+}
+
+TEST(DemToTin, BreakLinesLieInTheCrs) {
+  DemToTinOptions options;
+  options.error_means = ErrorMeans::kTolerance;
+  options.break_lines = {{{1105, 2095}, {1255, 2095}}};
+  options.break_line_tolerance_m = 0;
+  const DemToTin made = Waves().tin(error(1000), options);
+  const Tin& tin = made.levels[0].tin;
+  double along = 0;  // metres of edges on the line, each seen from both of its faces
+  for (const Face& f : tin.faces) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Xyz a = tin.to_crs(tin.vertices[static_cast<std::size_t>(f[i])]),
+                b = tin.to_crs(tin.vertices[static_cast<std::size_t>(f[(i + 1) % 3])]);
+      if (a.y == 2095 && b.y == 2095) along += std::abs(a.x - b.x);
+    }
+  }
+  EXPECT_EQ(along, 300);
+  options.break_lines = {{{1105, 2095}, {1255, std::numeric_limits<double>::infinity()}}};
+  EXPECT_TRUE(says(complaint<InvalidInput>([&] { Waves().tin(error(1000), options); }), "break_lines"));
+}
+
 TEST(DemToTin, RefusesWhatItCannotHold) {
   DemToTinOptions options;
   options.memory_budget = 100;
   EXPECT_THROW(Waves().tin(error(0.5), options), OverBudget);
   options = {};
-  options.confidence = 1;
+  options.levels = {1};
   EXPECT_TRUE(says(complaint<InvalidInput>([&] { Waves().tin(error(0.5), options); }), "confidence"));
   options = {};
   options.target_faces = -1;
