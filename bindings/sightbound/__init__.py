@@ -19,6 +19,7 @@ from .error_model import ErrorModel, terrain_table
 from .error_surfaces import ErrorSurfaces, error_surfaces
 from .hidden_volume import HiddenRasters, HiddenVolume
 from .line_of_sight import LineOfSight, line_of_sight, lines_of_sight
+from .probable_viewshed import ProbableViewshed, probable_viewshed
 from .simplify import SimplifiedTin, dem_to_tin, dem_to_tins, simplify
 from .tin import Tin, read_tin, tin_layers
 from .verification import Verification, verify
@@ -49,6 +50,7 @@ __all__ = [
     "HiddenRasters",
     "HiddenVolume",
     "LineOfSight",
+    "ProbableViewshed",
     "SimplifiedTin",
     "Subtraction",
     "TargetSight",
@@ -65,6 +67,7 @@ __all__ = [
     "gdal_version",
     "line_of_sight",
     "lines_of_sight",
+    "probable_viewshed",
     "read_dem",
     "read_tin",
     "simplify",

@@ -128,6 +128,13 @@ def threads(value: Any) -> int:
     return int(value)
 
 
+def whole(name: str, value: Any, least: int, most: int) -> int:
+    """A whole number within limits."""
+    if isinstance(value, bool) or not hasattr(value, "__index__") or not least <= value <= most:
+        raise ValueError(f"{name} is {value!r}; it must be a whole number from {least} to {most}.")
+    return int(value)
+
+
 def memory_budget(value: Any) -> int:
     """Bytes, or None for the core's own choice (its 0)."""
     if value is None:

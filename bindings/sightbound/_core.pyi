@@ -319,6 +319,21 @@ def read_tin(
 ) -> Tin: ...
 def tin_layers(path: str) -> list[str]: ...
 
+class ProbableOptions:
+    confidence: float
+    refraction: float
+    curvature: bool
+    realisations: int
+    seed: int
+    extent: Extent | None
+    threads: int
+    memory_budget: int
+    def __init__(self) -> None: ...
+
+def probable_viewshed(
+    dem: DemSource, observers: list[Observer], model: ErrorModel, options: ProbableOptions, progress: _Progress | None
+) -> dict[str, Any]: ...
+
 class DemToTinOptions:
     error_is_tolerance: bool
     levels: list[float]

@@ -13,50 +13,12 @@
 #include "base/memory_budget.h"
 #include "io/crs.h"
 #include "jobs/loaded_terrain.h"
-#include "jobs/observer_place.h"
+#include "jobs/observer_posts.h"
 #include "sight/viewshed.h"
 
 namespace sightbound {
 
 namespace {
-
-constexpr double kOnTheLimit = 1e-6;  // cells
-
-// One observer on his way through the job. Windows are in the whole raster.
-struct Post {
-  const Observer& observer;
-  std::string name;
-  GridPlace place;
-  Window reach;    // what he could be asked about
-  Window targets;  // what he is asked about
-  Window lines;    // what must be in memory for it
-  ObserverFrames frames;
-};
-
-std::vector<Post> place_observers(const DemSource& source, const Georeference& georeference,
-                                  const std::vector<Observer>& observers, const std::optional<Extent>& extent,
-                                  Progress& progress) {
-  const Window asked = window_of(extent, source);
-  const double larger_side = larger_cell_side(georeference, source.rows(), source.cols());
-  std::vector<Post> posts;
-  posts.reserve(observers.size());
-  for (std::size_t i = 0; i < observers.size(); ++i) {
-    const Observer& o = observers[i];
-    const std::string name = name_of(o, i);
-    validate(o, name);
-    const GridPlace place = place_on(source, o.x, o.y, name);
-    const Window around = reach_of(source, georeference, place, o.max_distance);
-    ObserverFrames frames = frames_of(source, georeference, place, around);
-    const double limit = o.max_distance + kOnTheLimit * larger_side;
-    const Window reach = samples_within(frames.widest(), place, around, limit);
-    const Window targets = intersection(reach, asked);
-    const Window lines = targets.empty() ? Window{place.base_col, place.base_row, 1, 1}
-                                         : lines_window(source, frames.widest(), place, targets);
-    posts.push_back({o, name, place, reach, targets, lines, std::move(frames)});
-    progress.check();
-  }
-  return posts;
-}
 
 // What is in memory at once.
 struct Plan {
@@ -135,15 +97,8 @@ class Run {
   }
 
   LoadedTerrain load(const Window& window) {
-    return LoadedTerrain(source_, georeference_, with_room(window), model_, options_, report_.warnings,
+    return LoadedTerrain(source_, georeference_, with_room(window, source_), model_, options_, report_.warnings,
                          workers_, progress_);
-  }
-
-  // A surface needs two samples each way.
-  Window with_room(Window w) const {
-    if (w.cols < 2) w = {std::min(w.col, source_.cols() - 2), w.row, 2, w.rows};
-    if (w.rows < 2) w = {w.col, std::min(w.row, source_.rows() - 2), w.cols, 2};
-    return w;
   }
 
   void view(const Post& post, const LoadedTerrain& terrain) {
@@ -179,14 +134,7 @@ class Run {
                                        : interpolate(sampling.values(), col, row),
                 &post.frames};
     view.tops = {absolute ? nullptr : &terrain.ground(), o.target_height};
-    // Distances are good to 1e-6 cells: a cell on the limit is within it.
-    const double on_the_limit = kOnTheLimit * terrain.scene().error.larger_side_m;
-    view.limits = {o.min_distance - on_the_limit,
-                   o.max_distance + on_the_limit,
-                   o.azimuth_from,
-                   o.azimuth_to,
-                   o.angle_from,
-                   o.angle_to};
+    view.limits = limits_of(o, terrain.scene().error.larger_side_m);
     canvas_.move_to(canvas_window_.col - window.col, canvas_window_.row - window.row);
     const ViewTotals seen = viewshed(view, canvas_, workers_, progress_);
     canvas_.next_observer();
