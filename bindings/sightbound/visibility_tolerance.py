@@ -36,11 +36,9 @@ def visibility_tolerance(
     """A tolerance for dem_to_tin() that leaves the observers' views as they are.
 
     What a viewshed with stand="ground", this confidence, refraction and curvature, and these heights above ground calls visible or
-    hidden from the DEM is to be so from the TIN, eye and target that high above it. Samples in view keep to half of z(confidence) times
-    the least standard deviation of all samples, or to the tolerance if that is less; only ground that stays hidden even when it rises
-    by the whole tolerance has all of it. Samples are proven, places between them are not: through a notch in a wall near the eye one
-    may be seen although the samples around it are not. Without vertical_rmse in the error model the ground in view stays exactly as
-    it is.
+    hidden from the DEM is so from the TIN, eye and target that high above it. Samples keep to half of z(confidence) times the least
+    standard deviation of all samples, or to the tolerance if that is less; only ground that no line of sight comes near, even when it
+    rises by the whole tolerance, has all of it. Without vertical_rmse in the error model all other ground stays exactly as it is.
 
     Args:
         dem: as read_dem() returns it.
@@ -59,7 +57,7 @@ def visibility_tolerance(
         tolerance), error_model (JSON of what was used), warnings.
 
     Raises:
-        ValueError: a wrong argument, named in the message; an observer outside the DEM or on nodata.
+        ValueError: a wrong argument, named in the message; an observer outside the DEM or on nodata; a DEM in degrees.
         OSError: a file cannot be read.
         MemoryError: the job would exceed the memory budget.
         Cancelled: progress returned False.

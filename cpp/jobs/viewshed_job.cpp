@@ -13,6 +13,7 @@
 #include "base/memory_budget.h"
 #include "io/crs.h"
 #include "jobs/loaded_terrain.h"
+#include "jobs/observer_eye.h"
 #include "jobs/observer_posts.h"
 #include "sight/viewshed.h"
 
@@ -104,35 +105,23 @@ class Run {
   void view(const Post& post, const LoadedTerrain& terrain) {
     const Window& window = terrain.window();
     const Observer& o = post.observer;
-    const double col = post.place.whole_col() - window.col, row = post.place.whole_row() - window.row;
+    const ObserverEye placed =
+        eye_above(terrain, o, post.name, post.place, post.frames, options_.height_reference);
     ObserverReport out;
     out.x = o.x;
     out.y = o.y;
     out.name = o.name;
     out.status = "ok";
-    out.ground_height = interpolate(terrain.ground(), col, row);
-    if (std::isnan(out.ground_height) || std::isnan(interpolate(terrain.scene().heights, col, row))) {
-      throw InvalidInput(post.name +
-                         " stands where the DEM has no height (nodata). Move it, or fill the hole first.");
-    }
-    const bool absolute = options_.height_reference == HeightReference::kAbsolute;
-    out.eye_height = absolute ? o.height : out.ground_height + o.height;
-    const double below = interpolate(terrain.scene().heights, col, row) - out.eye_height;
-    if (below > 0) {
+    out.ground_height = placed.ground;
+    out.eye_height = placed.eye.height;
+    if (placed.below > 0) {
       out.status = "eye below the terrain";
-      report_.warnings.push_back(post.name + ": the eye is " + std::to_string(below) +
+      report_.warnings.push_back(post.name + ": the eye is " + std::to_string(placed.below) +
                                  " m below the terrain.");
     }
 
-    View view{terrain.scene(), {}, {}, terrain.ground(), terrain.cell_areas(), {}};
-    const SampleField& sampling = terrain.scene().error.sampling;
-    view.eye = {&post.frames.widest(),
-                post.place.base_col - window.col,
-                post.place.base_row - window.row,
-                out.eye_height,
-                sampling.is_constant() ? static_cast<double>(sampling.constant())
-                                       : interpolate(sampling.values(), col, row),
-                &post.frames};
+    View view{terrain.scene(), placed.eye, {}, terrain.ground(), terrain.cell_areas(), {}};
+    const bool absolute = options_.height_reference == HeightReference::kAbsolute;
     view.tops = {absolute ? nullptr : &terrain.ground(), o.target_height};
     view.limits = limits_of(o, terrain.scene().error.larger_side_m);
     canvas_.move_to(canvas_window_.col - window.col, canvas_window_.row - window.row);

@@ -3,10 +3,10 @@
 // they see from the DEM.
 //
 // Claims are those of a viewshed with stand = ground: they leave z(c) times the ends' sigma_s to spare at
-// least. So every sample keeps to half of z(c) times the least sigma_s of all. Samples that are hidden from
-// all observers even when they rise by the whole tolerance, and whose neighbours are, neither are seen nor
-// hide anything that something nearer does not hide: they have the whole tolerance. Not proven between
-// samples: through a notch in a wall near the eye a place may be seen although the samples around it are not.
+// least. So every sample keeps to half of z(c) times the least sigma_s of all, but for dead ground: where all
+// squares of samples around one are so for all observers, however high it rises within the tolerance, nobody
+// sees it and it hides nothing that something nearer does not hide. Such samples have the whole tolerance.
+// The proof is in docs/algorithms/simplify.md.
 #pragma once
 
 #include <string>
@@ -27,8 +27,9 @@ struct VisibilityTolerance {
 };
 
 // `tolerance_m` where nothing is at stake. Of the observers places, heights (targets 0 or more) and names
-// count, of the options confidence, refraction, curvature, threads and the budget. Cost: one viewshed for
-// each observer; where sigma_s varies the DEM is read once more. Throws as run_viewshed().
+// count, of the options confidence, refraction, curvature, threads and the budget. Cost: a sweep for each
+// observer, without settling anything. Throws as run_viewshed(), and InvalidInput for a DEM in degrees, which
+// no TIN can be made of.
 VisibilityTolerance run_visibility_tolerance(const DemSource&, const std::vector<Observer>&,
                                              const ErrorModel&, double tolerance_m, const ViewshedOptions&,
                                              Progress&);

@@ -3,6 +3,13 @@
 
 namespace sightbound {
 
+double reach_of_side(const Scene& scene, const Eye& eye, bool transposed, int sign) {
+  const double major = transposed ? eye.frame->row() : eye.frame->col();
+  const int base = transposed ? eye.base_row : eye.base_col;
+  const int majors = transposed ? scene.heights.rows() : scene.heights.cols();
+  return sign > 0 ? majors - 1 - base - major : major + base;
+}
+
 double Fan3::bend() const {
   constexpr double kSafety = 2;  // on the error of interpolating between two geodesics, measured half way
   return kSafety * std::abs(middle - (a + b) / 2);

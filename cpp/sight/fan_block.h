@@ -27,6 +27,9 @@ struct FanBlock {
   double reach;  // major steps to the rim of the grid
 };
 
+// Major steps from the eye to the rim of the grid on one of its four sides.
+double reach_of_side(const Scene&, const Eye&, bool transposed, int sign);
+
 // A quantity along the block's three geodesics at one column.
 struct Fan3 {
   double a = 0, middle = 0, b = 0;

@@ -33,21 +33,24 @@ struct TerrainColumn {
 
   // Of `above`.
   float highest_above() const;
+  // Rows as far as the block reaches here and on the columns beside it.
+  void begin(const ColumnPlace& before, const ColumnPlace& here, const ColumnPlace& next);
 };
+
+// The column's rows of a grid, `outside` where the grid has none.
+void copy_rows(const Grid<float>& from, const FanColumns&, const TerrainColumn&, float outside,
+               std::vector<float>& to);
 
 class ColumnLoader {
  public:
   // Keeps pointers.
   ColumnLoader(const Scene&, const TargetTops&, const FanColumns&, float height_pad);
 
-  // Rows as far as the block reaches on the columns beside it, too.
   void load(const ColumnPlace& before, const ColumnPlace& here, const ColumnPlace& next, TerrainColumn&);
 
  private:
-  void copy(const Grid<float>& from, int major, const TerrainColumn&, std::vector<float>& to,
-            float outside) const;
-  void copy(const SampleField& from, int major, const TerrainColumn&, std::vector<float>& to) const;
-  void load_tops(int major, TerrainColumn&);
+  void copy(const SampleField& from, const TerrainColumn&, std::vector<float>& to) const;
+  void load_tops(TerrainColumn&);
 
   const Scene* scene_;
   const TargetTops* tops_;

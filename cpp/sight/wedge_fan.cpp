@@ -19,11 +19,9 @@ void WedgeFan::add_side(bool transposed, int sign) {
   const ObserverFrame& frame = *eye_.frame;
   const double major0 = transposed ? frame.row() : frame.col(),
                minor0 = transposed ? frame.col() : frame.row();
-  const int base_major = transposed ? eye_.base_row : eye_.base_col,
-            base_minor = transposed ? eye_.base_col : eye_.base_row;
-  const int majors = transposed ? scene_.heights.rows() : scene_.heights.cols();
+  const int base_minor = transposed ? eye_.base_col : eye_.base_row;
   const int minors = transposed ? scene_.heights.cols() : scene_.heights.rows();
-  const double reach = sign > 0 ? majors - 1 - base_major - major0 : major0 + base_major;
+  const double reach = reach_of_side(scene_, eye_, transposed, sign);
   if (reach <= 0) return;
   // A geodesic to a cell on the diagonal may leave the observer a little steeper than 1: some blocks more,
   // where needed.

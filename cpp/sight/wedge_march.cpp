@@ -9,16 +9,14 @@ namespace sightbound {
 
 namespace {
 
-constexpr int kLeastWedges = kVector;  // per block
-constexpr double kWedgesPerCell =
-    1.0 / 3;  // at least so many wedges cross a cell side: more cost more than the cells they would prove
-// Steps from the observer where the lower horizon begins, and the upper one: nearer, a corner's slope says
-// nothing; and where strips may be leapt over: nearer, their distances differ too much.
-constexpr double kFirstBelow = 0.5, kFirstAbove = 2, kFirstLeap = 16;
+// At least so many wedges cross a cell side: more cost more than the cells they would prove.
+constexpr double kWedgesPerCell = 1.0 / 3;
+// Steps from the observer where the upper horizon begins: nearer, a corner's slope says nothing; and where
+// strips may be leapt over: nearer, their distances differ too much.
+constexpr double kFirstAbove = 2, kFirstLeap = 16;
 
-// A float is right to 6e-8 of its size; some eight roundings meet in one slope.
-float pad_of_heights(const Eye& eye) {
-  return static_cast<float>(1e-3 + 5e-7 * std::max(std::abs(eye.height), 1e4));
+double moving(const Scene& scene, const Eye& eye) {
+  return scene.ends_move ? scene.largest_ratio * eye.sampling : 0;
 }
 
 }  // namespace
@@ -27,15 +25,11 @@ WedgeMarch::WedgeMarch(const Scene& scene, const Eye& eye, const TargetTops& top
     : scene_(scene),
       tops_(tops),
       columns_(scene, eye, block),
+      eye_above_(static_cast<float>(eye.height - moving(scene, eye))),
       height_pad_(pad_of_heights(eye)),
       loader_(scene, tops_, columns_, height_pad_),
-      wedges_(kLeastWedges),
-      below_(static_cast<std::size_t>(wedges_), -kUnbounded),
-      above_(columns_.base_major(), columns_.observer_major(), block.sign, block.reach, wedges_) {
-  const double moving = scene.ends_move ? scene.largest_ratio * eye.sampling : 0;
-  eye_above_ = static_cast<float>(eye.height - moving);
-  eye_below_ = static_cast<float>(eye.height + moving);
-}
+      below_(columns_, static_cast<float>(eye.height + moving(scene, eye))),
+      above_(columns_.base_major(), columns_.observer_major(), block.sign, block.reach, below_.wedges()) {}
 
 void WedgeMarch::run(double reach_m, const WedgeFan::Visitor& visit) {
   const int first = columns_.first_major(), sign = columns_.sign();
@@ -74,7 +68,7 @@ void WedgeMarch::step(const ColumnPlace& here, const ColumnPlace& next, const We
     loader_.load(near_.place, here, next, here_);
     targets(here_, visit);
     split(here.step);
-    lower(here_);
+    below_.raise(here, here_.first, here_.rows, here_.below.data());
   }
   move_on();
 }
@@ -96,7 +90,10 @@ bool WedgeMarch::leap(const Strip& strip, const WedgeFan::Visitor& visit) {
                highest = static_cast<double>(most.height) + wide + height_pad_;
   const double ground = tops_.surface == nullptr ? 0.0 : static_cast<double>(most.height),
                top = ground + tops_.height + (scene_.ends_move ? wide : 0) + height_pad_;
-  if (!hides(strip, std::max(top, highest))) return false;
+  for (const ColumnPlace& p : strip.columns()) {
+    if (is_thin(p)) return false;
+  }
+  if (!below_.hides(strip.columns(), std::max(top, highest))) return false;
 
   for (int i = 0; i < strip.count; ++i) {
     const ColumnPlace& here = strip.places[static_cast<std::size_t>(i)];
@@ -137,24 +134,9 @@ bool WedgeMarch::bound(const Strip& strip, StripBounds& most) const {
   return true;
 }
 
-// Does the lower horizon hide what reaches up to `top` anywhere in the strip? Judged as judge_targets() does.
-bool WedgeMarch::hides(const Strip& strip, double top) const {
-  float drop = kUnbounded;
-  for (int i = 0; i < strip.count; ++i) {
-    const ColumnPlace& p = strip.places[static_cast<std::size_t>(i)];
-    if (is_thin(p)) return false;
-    drop = std::min(drop, columns_.least_drop_of_all(p, wedges_));
-  }
-  const double over = top - drop - eye_below_;
-  const double slope =
-      over * (over > 0 ? columns_.largest_inverse(strip.first()) : columns_.smallest_inverse(strip.last()));
-  const double horizon = *std::min_element(below_.begin(), below_.end());
-  return horizon > slope + 2e-6 * (std::abs(slope) + std::abs(horizon));
-}
-
 // Wedges too thin for their pad.
 bool WedgeMarch::is_thin(const ColumnPlace& p) const {
-  return 2 * columns_.pad(p) >= static_cast<float>(columns_.width(p, wedges_));
+  return 2 * columns_.pad(p) >= static_cast<float>(columns_.width(p, below_.wedges()));
 }
 
 void WedgeMarch::targets(const TerrainColumn& column, const WedgeFan::Visitor& visit) {
@@ -164,19 +146,19 @@ void WedgeMarch::targets(const TerrainColumn& column, const WedgeFan::Visitor& v
   TargetStep step;
   step.first_row = rows.low - column.first;
   step.rows = rows.count();
-  step.wedges = wedges_;
-  step.edges = columns_.edges(here, column.first, wedges_);
+  step.wedges = below_.wedges();
+  step.edges = columns_.edges(here, column.first, below_.wedges());
   step.pad = columns_.pad(here);
-  step.drop_low = columns_.least_drop(here, wedges_);
-  step.drop_high = columns_.most_drop(here, wedges_);
+  step.drop_low = columns_.least_drop(here, below_.wedges());
+  step.drop_high = columns_.most_drop(here, below_.wedges());
   step.eye_above = eye_above_;
-  step.eye_below = eye_below_;
+  step.eye_below = below_.eye();
   step.least = columns_.largest_inverse(here);
   step.most = columns_.smallest_inverse(here);
   const bool sure = !is_thin(here);
   states_.resize(static_cast<std::size_t>(whole_vectors(step.rows)));
   if (sure) {
-    judge_targets(step, below_.data(), column.top_below.data(), states_.data());
+    judge_targets(step, below_.slopes(), column.top_below.data(), states_.data());
   } else {
     std::fill(states_.begin(), states_.end(), static_cast<std::int32_t>(kOpen));
   }
@@ -201,31 +183,10 @@ FanColumn WedgeMarch::column_at(const ColumnPlace& here, const RowRange& rows) c
 }
 
 void WedgeMarch::split(double step) {
-  while (wedges_ * kBlocksPerUnit < kWedgesPerCell * step) {
-    wedges_ *= 2;
-    below_.resize(static_cast<std::size_t>(wedges_));
-    for (std::size_t i = below_.size(); i-- > 0;) below_[i] = below_[i / 2];
+  while (below_.wedges() * kBlocksPerUnit < kWedgesPerCell * step) {
+    below_.split();
     above_.split();
   }
-}
-
-void WedgeMarch::lower(const TerrainColumn& column) {
-  const ColumnPlace& here = column.place;
-  if (here.step < kFirstBelow) return;
-  WedgeStep step;
-  step.wedges = wedges_;
-  step.far = columns_.edges(here, column.first, wedges_);
-  step.pad = columns_.pad(here);
-  step.rows = column.rows;
-  step.window = window_for(columns_.width(here, wedges_) + 2 * static_cast<double>(step.pad));
-  widened_.resize(static_cast<std::size_t>(column.rows + step.window + 2 * kVector));
-  std::copy_n(column.below.begin(), column.rows, widened_.begin());
-  widen_lowest(column.rows, step.window, widened_.data());
-  step.drop_high = columns_.most_drop(here, wedges_);
-  step.eye_below = eye_below_;
-  step.far_most = columns_.smallest_inverse(here);
-  step.far_least = columns_.largest_inverse(here);
-  raise_below(step, column.below.data(), widened_.data(), below_.data());
 }
 
 void WedgeMarch::raise(const TerrainColumn& near_column, const TerrainColumn& column) {
@@ -238,19 +199,20 @@ void WedgeMarch::raise(const TerrainColumn& near_column, const TerrainColumn& co
   const int first = std::max(near_column.first, column.first);
   const int end = std::min(near_column.first + near_column.rows, column.first + column.rows);
   WedgeStep step;
-  step.wedges = wedges_;
-  step.near = columns_.edges(near, first, wedges_);
-  step.far = columns_.edges(here, first, wedges_);
+  step.wedges = below_.wedges();
+  step.near = columns_.edges(near, first, below_.wedges());
+  step.far = columns_.edges(here, first, below_.wedges());
   step.pad = std::max(columns_.pad(near), columns_.pad(here));
   step.rows = end - first;
   const double shift = std::max(std::abs(here.minor.a - near.minor.a), std::abs(here.minor.b - near.minor.b));
-  step.window = window_for(std::max(columns_.width(near, wedges_), columns_.width(here, wedges_)) + shift +
-                           2 * static_cast<double>(step.pad));
+  step.window =
+      window_for(std::max(columns_.width(near, below_.wedges()), columns_.width(here, below_.wedges())) +
+                 shift + 2 * static_cast<double>(step.pad));
   cells_.resize(static_cast<std::size_t>(end - first + step.window + 2 * kVector));
   highest_corners(end - first - 1, near_column.above.data() + (first - near_column.first),
                   column.above.data() + (first - column.first), cells_.data());
   widen_highest(end - first - 1, step.window, cells_.data());
-  step.drop_low = columns_.least_drop(near, wedges_);
+  step.drop_low = columns_.least_drop(near, below_.wedges());
   step.eye_above = eye_above_;
   step.near_least = columns_.largest_inverse(near);
   step.far_most = columns_.smallest_inverse(here);
@@ -259,7 +221,7 @@ void WedgeMarch::raise(const TerrainColumn& near_column, const TerrainColumn& co
 
 void WedgeMarch::raise_all(const TerrainColumn& near, const TerrainColumn& here) {
   const float over = std::max(near.highest_above(), here.highest_above()) -
-                     columns_.least_drop_of_all(near.place, wedges_) - eye_above_;
+                     columns_.least_drop_of_all(near.place, below_.wedges()) - eye_above_;
   const float slope =
       over * (over > 0 ? columns_.largest_inverse(near.place) : columns_.smallest_inverse(here.place));
   above_.raise_all(near.place.major, here.place.major, slope);

@@ -8,8 +8,10 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
+#include "sight/lower_horizon.h"
 #include "sight/terrain_column.h"
 #include "sight/upper_horizon.h"
 #include "sight/wedge_fan.h"
@@ -29,6 +31,7 @@ class WedgeMarch {
     int count = 0;
     std::array<ColumnPlace, kMost + 1> places;  // and the column after them
 
+    std::span<const ColumnPlace> columns() const { return {places.data(), static_cast<std::size_t>(count)}; }
     const ColumnPlace& first() const { return places[0]; }
     const ColumnPlace& last() const { return places[static_cast<std::size_t>(count - 1)]; }
     const ColumnPlace& after() const { return places[static_cast<std::size_t>(count)]; }
@@ -42,26 +45,23 @@ class WedgeMarch {
   void step(const ColumnPlace& here, const ColumnPlace& next, const WedgeFan::Visitor&);
   bool leap(const Strip&, const WedgeFan::Visitor&);
   bool bound(const Strip&, StripBounds&) const;
-  bool hides(const Strip&, double top) const;
   bool is_thin(const ColumnPlace&) const;
   void targets(const TerrainColumn&, const WedgeFan::Visitor&);
   FanColumn column_at(const ColumnPlace&, const RowRange&) const;
   void move_on();
   void split(double step);
-  void lower(const TerrainColumn&);
   void raise(const TerrainColumn& near, const TerrainColumn& here);
   void raise_all(const TerrainColumn& near, const TerrainColumn& here);
 
   const Scene& scene_;
   const TargetTops& tops_;
   FanColumns columns_;
-  float eye_above_, eye_below_, height_pad_;
+  float eye_above_, height_pad_;
   ColumnLoader loader_;
-  int wedges_;
-  std::vector<float> below_;            // the lower horizon, one a wedge
-  UpperHorizon above_;                  //
+  LowerHorizon below_;
+  UpperHorizon above_;
   TerrainColumn before_, near_, here_;  // the last two columns, the one being judged
-  std::vector<float> cells_, widened_;  // scratch
+  std::vector<float> cells_;            // scratch
   std::vector<std::int32_t> states_;
 };
 

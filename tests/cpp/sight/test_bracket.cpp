@@ -9,54 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "sight/viewshed.h"
+#include "support/rough_ground.h"
 
 namespace sightbound {
 namespace {
-
-struct Ground {
-  Grid<float> heights;
-  ErrorField error;
-};
-
-Ground rough_ground(int rows, int cols, float sigma, bool holes) {
-  std::mt19937 random(11);
-  std::normal_distribution<float> step(0, 2);
-  Ground ground{Grid<float>(rows, cols), {}};
-  for (int r = 0; r < rows; ++r) {
-    for (int c = 0; c < cols; ++c) {
-      const float before = c > 0 ? ground.heights.at(r, c - 1) : 100,
-                  above = r > 0 ? ground.heights.at(r - 1, c) : 100;
-      ground.heights.at(r, c) = (before + above) / 2 + step(random);
-    }
-  }
-  if (holes) ground.heights.at(rows / 3, cols / 4) = std::numeric_limits<float>::quiet_NaN();
-  ground.error.sampling = SampleField(sigma);
-  ground.error.amplitude = SampleField(0.0f);
-  ground.error.cell_sizes.assign(static_cast<std::size_t>(rows), {10, 10});
-  ground.error.farthest.assign(static_cast<std::size_t>(rows), 10 / std::sqrt(2.0));
-  ground.error.larger_side_m = 10;
-  return ground;
-}
-
-// Error in patches, some ten times that of others: a search that takes one place's sigma for another's is
-// found out.
-void vary_error(Ground& ground) {
-  constexpr int kPatch = 9;
-  std::mt19937 random(12);
-  std::exponential_distribution<float> peaked(2);
-  const int rows = ground.heights.rows(), cols = ground.heights.cols();
-  Grid<float> patches(rows / kPatch + 1, cols / kPatch + 1), sampling(rows, cols), amplitude(rows, cols);
-  for (float& p : patches.values()) p = peaked(random);
-  for (int r = 0; r < rows; ++r) {
-    for (int c = 0; c < cols; ++c) {
-      amplitude.at(r, c) = patches.at(r / kPatch, c / kPatch);
-      sampling.at(r, c) = 0.02f + 0.1f * amplitude.at(r, c);
-    }
-  }
-  ground.error.sampling = SampleField(std::move(sampling));
-  ground.error.amplitude = SampleField(std::move(amplitude));
-  ground.error.profile = {GeologicShape::kGrowth, 0, 0.7, 5};
-}
 
 // k* from every judged place, none skipped.
 double by_every_place(const Scene& scene, const SightLine& line) {
@@ -73,17 +29,23 @@ struct Case {
   bool holes;
   bool varied = false;  // the error differs from sample to sample, and grows between them
   int rows = 70, cols = 90;
+  bool ends_move = false;
 };
 
-class Bracket : public testing::TestWithParam<Case> {};
+class Bracket : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once) {
   const Case& test = GetParam();
-  Ground ground = rough_ground(test.rows, test.cols, test.sigma, test.holes);
-  if (test.varied) vary_error(ground);
+  testing::RoughGround ground = testing::rough_ground(test.rows, test.cols, test.sigma, test.holes);
+  if (test.varied) testing::vary_error(ground);
   const Workers workers(2);
   Progress progress;
-  const Scene scene(ground.heights, ground.error, {}, workers, progress);
+  SceneOptions options;
+  options.ends_move = test.ends_move;
+  const Scene scene(ground.heights, ground.error, options, workers, progress);
+  const auto sampling = [&](int row, int col) {
+    return test.ends_move ? double(ground.error.sampling.at(row, col)) : 0.0;
+  };
   const int base_col = static_cast<int>(test.col), base_row = static_cast<int>(test.row);
   const Georeference plane{Geotransform({0, 10, 0, 0, 0, -10})};
   const ObserverFrame frame(plane, test.col - base_col, test.row - base_row,
@@ -93,6 +55,7 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
   eye.base_col = base_col;
   eye.base_row = base_row;
   eye.height = 112;
+  eye.sampling = sampling(base_row, base_col);
   const TargetTops tops{&ground.heights, 1.5};
   const WedgeFan fan(scene, eye, tops, 1e9);
 
@@ -107,8 +70,9 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
                   col = column.transposed ? minor : column.major;
         EXPECT_TRUE(visited.emplace(row, col).second) << row << " " << col;
         if (std::isnan(ground.heights.at(row, col))) continue;
-        const SightLine line(scene, eye,
-                             {double(col - base_col), double(row - base_row), tops.at(row, col), 0});
+        const SightLine line(
+            scene, eye,
+            {double(col - base_col), double(row - base_row), tops.at(row, col), sampling(row, col)});
         const double truth = by_every_place(scene, line);
         if (column.all_hidden() || column.state[i] == kSurelyHidden) {
           ++hidden;
@@ -130,17 +94,63 @@ TEST_P(Bracket, proves_nothing_that_its_line_denies_and_visits_every_target_once
   EXPECT_GT(hidden, 100);
   EXPECT_GT(open, 100);
   EXPECT_GT(cleared, 10);
-  if (test.rows > 100) EXPECT_GT(leapt, 100);
+  if (test.rows > 100) {
+    EXPECT_GT(leapt, 100);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, Bracket,
-                         testing::Values(Case{0.5f, 40, 30, false}, Case{0.05f, 40.3, 30.7, false},
-                                         Case{0.5f, 0, 0, false}, Case{0.5f, 89, 69, false},
-                                         Case{0.2f, 17.5, 68.9, true}, Case{2.0f, 40, 30, true},
-                                         Case{0, 130.4, 20.2, false, true, 260, 300},
-                                         Case{0.3f, 20.4, 130.2, true, false, 261, 303},
-                                         Case{0.3f, 301.5, 3, true, false, 260, 303},
-                                         Case{0, 40, 30, true, true}));
+                         ::testing::Values(Case{0.5f, 40, 30, false}, Case{0.05f, 40.3, 30.7, false},
+                                           Case{0.5f, 0, 0, false}, Case{0.5f, 89, 69, false},
+                                           Case{0.2f, 17.5, 68.9, true}, Case{2.0f, 40, 30, true},
+                                           Case{0, 130.4, 20.2, false, true, 260, 300},
+                                           Case{0.3f, 20.4, 130.2, true, false, 261, 303},
+                                           Case{0.3f, 301.5, 3, true, false, 260, 303},
+                                           Case{0, 40, 30, true, true},
+                                           Case{0.5f, 40, 30, false, false, 70, 90, true},
+                                           Case{0.3f, 130.4, 20.2, false, false, 150, 170, true},
+                                           Case{0, 20.4, 130.2, false, true, 151, 173, true}));
+
+// A canvas may be hidden everywhere to begin with: a cell that the fan passed over would be a false claim.
+TEST(Fan, visits_every_cell_once_however_the_grid_lies_on_the_earth) {
+  constexpr int kRows = 61, kCols = 83;
+  const testing::RoughGround ground = testing::rough_ground(kRows, kCols, 0.1f, true);
+  const Workers workers(2);
+  Progress progress;
+  const Scene scene(ground.heights, ground.error, {}, workers, progress);
+  for (const double latitude : {-33.0, 0.2, 52.0, 71.0}) {
+    const Georeference degrees(Geotransform({10, 0.05, 0, latitude, 0, -0.02}), Ellipsoid{},
+                               [](std::span<double>, std::span<double>) {});
+    for (const auto& [col, row] : {std::pair{41.0, 30.0},
+                                   {40.4, 30.9},
+                                   {0.0, 0.0},
+                                   {82.0, 60.0},
+                                   {0.5, 59.3},
+                                   {81.7, 0.0},
+                                   {82.0, 0.0},
+                                   {33.0, 60.0}}) {
+      const int base_col = static_cast<int>(col), base_row = static_cast<int>(row);
+      const ObserverFrame frame(degrees.of_window({base_col, base_row, 1, 1}), col - base_col, row - base_row,
+                                {-base_col, -base_row, kCols, kRows});
+      Eye eye;
+      eye.frame = &frame, eye.base_col = base_col, eye.base_row = base_row, eye.height = 110;
+      const TargetTops tops{&ground.heights, 0};
+      const WedgeFan fan(scene, eye, tops, 1e9);
+      Grid<int> visits(kRows, kCols, 0);
+      for (std::size_t block = 0; block < fan.blocks(); ++block) {
+        fan.march(block, [&](const FanColumn& column, const WedgeFan::OpenPartsOf&) {
+          for (int minor = column.first_minor; minor < column.first_minor + column.count; ++minor)
+            ++(column.transposed ? visits.at(column.major, minor) : visits.at(minor, column.major));
+        });
+      }
+      if (col == base_col && row == base_row) ++visits.at(base_row, base_col);  // his own, which is no target
+      for (int r = 0; r < kRows; ++r) {
+        for (int c = 0; c < kCols; ++c)
+          ASSERT_EQ(visits.at(r, c), 1) << latitude << ": " << c << " " << r << " from " << col << " " << row;
+      }
+    }
+  }
+}
 
 }  // namespace
 }  // namespace sightbound
