@@ -7,10 +7,23 @@
 
 namespace sightbound {
 
+namespace {
+
+// x += n * step; what rounding takes from it goes to `lost` (Knuth's sum, and the product's remainder).
+void add(double n, double step, double& x, double& lost) {
+  const double product = n * step, sum = x + product, added = sum - x;
+  lost += (x - (sum - added)) + (product - added) + std::fma(n, step, -product);
+  x = sum;
+}
+
+}  // namespace
+
 Geotransform::Geotransform(const std::array<double, 6>& g) : g_(g) {
   const double determinant = g[1] * g[5] - g[2] * g[4];
   if (!std::isfinite(determinant) || determinant == 0 || !std::isfinite(g[0]) || !std::isfinite(g[3])) {
-    throw InvalidInput("The DEM's geotransform is not invertible: cells need a width and a height. Georeference the raster.");
+    throw InvalidInput(
+        "The DEM's geotransform is not invertible: cells need a width and a height. Georeference the "
+        "raster.");
   }
 }
 
@@ -26,26 +39,40 @@ Xy Geotransform::to_raster(double x, double y) const {
 }
 
 Geotransform Geotransform::of_window(const Window& w) const {
-  std::array<double, 6> g = g_;
-  g[0] += w.col * g[1] + w.row * g[2];
-  g[3] += w.col * g[4] + w.row * g[5];
-  return Geotransform(g);
+  Geotransform moved = *this;
+  moved.move(w.col, w.row);
+  return moved;
 }
 
 Geotransform Geotransform::of_flipped(int rows) const {
+  Geotransform turned = *this;
+  turned.move(0, rows);
+  turned.g_[2] = -g_[2];
+  turned.g_[5] = -g_[5];
+  return turned;
+}
+
+Geotransform Geotransform::seen_from(const Xy& origin, double scale) const {
   std::array<double, 6> g = g_;
-  g[0] += rows * g[2];
-  g[3] += rows * g[5];
-  g[2] = -g[2];
-  g[5] = -g[5];
+  g[0] = (g[0] - origin.x) + lost_.x;
+  g[3] = (g[3] - origin.y) + lost_.y;
+  for (double& one : g) one *= scale;
   return Geotransform(g);
+}
+
+void Geotransform::move(int cols, int rows) {
+  add(cols, g_[1], g_[0], lost_.x);
+  add(rows, g_[2], g_[0], lost_.x);
+  add(cols, g_[4], g_[3], lost_.y);
+  add(rows, g_[5], g_[3], lost_.y);
 }
 
 bool Geotransform::diagonal_is_anti() const {
   // Cosine of the angle to the direction south-east, taken without sign: a diagonal has none.
   const auto along_south_east = [](double x, double y) { return std::abs(x - y) / std::hypot(x, y); };
   constexpr double kTie = 1e-9;  // rounding of a square cell turned by 45 degrees; the main diagonal wins
-  return along_south_east(g_[1] - g_[2], g_[4] - g_[5]) > along_south_east(g_[1] + g_[2], g_[4] + g_[5]) + kTie;
+  return along_south_east(g_[1] - g_[2], g_[4] - g_[5]) >
+         along_south_east(g_[1] + g_[2], g_[4] + g_[5]) + kTie;
 }
 
 }  // namespace sightbound

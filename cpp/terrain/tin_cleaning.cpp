@@ -19,8 +19,6 @@ namespace sightbound {
 
 namespace {
 
-constexpr double kLargestCoordinate = 1e9;  // metres or feet: the Earth is 4e7 m round
-
 std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 std::string counted(std::size_t n, const std::string& one, const std::string& many) {

@@ -27,9 +27,8 @@ bool OriginalTin::face(std::size_t number, Corners& corners) const {
 
 OriginalDem::OriginalDem(Grid<float> heights, const Geotransform& geotransform, const Tin& frame)
     : heights_(std::move(heights)),
-      geotransform_(geotransform),
-      origin_(frame.origin),
-      metres_per_unit_(frame.metres_per_unit) {
+      to_frame_(geotransform.seen_from({frame.origin.x, frame.origin.y}, frame.metres_per_unit)),
+      lowest_(frame.origin.z) {
   if (heights_.rows() < 2 || heights_.cols() < 2)
     throw InvalidInput("original has " + std::to_string(heights_.rows()) + " x " +
                        std::to_string(heights_.cols()) + " samples; it must have 2 x 2 at least.");
@@ -41,10 +40,8 @@ std::size_t OriginalDem::faces() const {
 
 Xyz OriginalDem::place(std::size_t vertex) const {
   const auto cols = static_cast<std::size_t>(heights_.cols());
-  const Xy p =
-      geotransform_.of_sample(static_cast<double>(vertex % cols), static_cast<double>(vertex / cols));
-  return {(p.x - origin_.x) * metres_per_unit_, (p.y - origin_.y) * metres_per_unit_,
-          static_cast<double>(heights_.data()[vertex]) - origin_.z};
+  const Xy p = to_frame_.of_sample(static_cast<double>(vertex % cols), static_cast<double>(vertex / cols));
+  return {p.x, p.y, static_cast<double>(heights_.data()[vertex]) - lowest_};
 }
 
 bool OriginalDem::face(std::size_t number, Corners& corners) const {

@@ -49,22 +49,40 @@ struct JudgedFace {
   double least_tolerance = 0, tolerance_steepness = 0;
 };
 
-// The bounds at the corners of one piece.
-void judge(const JudgedFace& original, const PlanFace& simplified, std::size_t number,
-           const PlanPolygon& piece, double margin, double z_rounding, PieceSummary& found) {
-  const double slack = (original.plan.steepness + simplified.steepness) * margin + z_rounding;
-  const double tolerance_slack = original.tolerance_steepness * margin;
+// A face of the original over one of the simplified.
+struct FacePair {
+  const JudgedFace& original;
+  const PlanFace& simplified;
+  std::size_t number;  // of the simplified face
+
+  double deviation(const Xy& p) const { return std::abs(simplified.height(p) - original.plan.height(p)); }
+  double tolerance(const Xy& p, double slack) const {
+    return std::max(original.plan.at(p, original.tolerance) - slack, original.least_tolerance);
+  }
+};
+
+// At the corners of a piece that holds all of what the two share, and not much more.
+void bound(const FacePair& pair, const PlanPolygon& piece, double margin, double z_rounding,
+           PieceSummary& found) {
+  const double slack = (pair.original.plan.steepness + pair.simplified.steepness) * margin + z_rounding;
+  const double tolerance_slack = pair.original.tolerance_steepness * margin;
+  const auto keep = [&](Extreme& kept, double bound, const Xy& p) {
+    if (bound > kept.bound) kept = {bound, kept.measured, {p.x, p.y, pair.simplified.height(p)}, pair.number};
+  };
   for (std::size_t n = 0; n < piece.size(); ++n) {
     const Xy p = piece[n];
-    const double height = simplified.height(p), measured = std::abs(height - original.plan.height(p));
-    const double tolerance =
-        std::max(original.plan.at(p, original.tolerance) - tolerance_slack, original.least_tolerance);
-    const double bound = measured + slack, ratio = bound / tolerance * (1 + 0x1p-50);
-    if (bound > found.deviation.bound)
-      found.deviation = {bound, found.deviation.measured, {p.x, p.y, height}, number};
-    if (ratio > found.ratio.bound) found.ratio = {ratio, found.ratio.measured, {p.x, p.y, height}, number};
-    found.deviation.measured = std::max(found.deviation.measured, measured);
-    found.ratio.measured = std::max(found.ratio.measured, measured / tolerance);
+    const double most = pair.deviation(p) + slack;
+    keep(found.deviation, most, p);
+    keep(found.ratio, most / pair.tolerance(p, tolerance_slack) * (1 + 0x1p-50), p);
+  }
+}
+
+// At the corners of what they share.
+void measure(const FacePair& pair, const PlanPolygon& piece, PieceSummary& found) {
+  for (std::size_t n = 0; n < piece.size(); ++n) {
+    const double deviation = pair.deviation(piece[n]);
+    found.deviation.measured = std::max(found.deviation.measured, deviation);
+    found.ratio.measured = std::max(found.ratio.measured, deviation / pair.tolerance(piece[n], 0));
   }
 }
 
@@ -88,7 +106,6 @@ void PieceSummary::append(const PieceSummary& later) {
 }
 
 PieceSummary Overlay::pieces_of(std::size_t first, std::size_t last, CoveredShares& covered) const {
-  const double margin = simplified.margin();
   PieceSummary found;
   std::vector<const PlanFace*> over;
   OriginalSurface::Corners corners;
@@ -120,15 +137,18 @@ PieceSummary Overlay::pieces_of(std::size_t first, std::size_t last, CoveredShar
       const PlanPolygon piece = common(face.plan, other, how, margin);
       if (piece.empty()) return;
       ++found.pieces;
-      judge(face, other, number, piece, margin, z_rounding, found);
-      const double piece_area = how.is_inside() ? area : common(face.plan, other, how, 0).area();
+      const FacePair pair{face, other, number};
+      bound(pair, piece, margin, z_rounding, found);
+      const PlanPolygon core = how.is_inside() ? piece : common(face.plan, other, how, 0);
+      measure(pair, core, found);
+      const double piece_area = how.is_inside() ? area : core.area();
       shared += piece_area;
       covered.add(number, piece_area / (0.5 * other.twice_area));
       is_folded = is_folded || folded[number] != 0;
       over.push_back(&other);
     });
     const double gap = is_folded ? area_without(face.plan, over) : area - shared;
-    if (gap <= margin * face.plan.perimeter) continue;  // a rim of rounding
+    if (gap <= simplified.rim() * face.plan.perimeter) continue;
     found.uncovered.m2 += gap;
     if (gap > found.largest_gap_m2) {
       found.largest_gap_m2 = gap;
@@ -141,11 +161,11 @@ PieceSummary Overlay::pieces_of(std::size_t first, std::size_t last, CoveredShar
 double Overlay::deviation_at(const Xyz& place) const {
   const Xy p{place.x, place.y};
   double found = std::numeric_limits<double>::quiet_NaN();
-  const double around = simplified.margin();
+  const double around = simplified.rim();
   simplified.each_near({{p.x - around, p.y - around}, {p.x + around, p.y + around}}, [&](std::size_t number) {
     const PlanFace& face = simplified.faces()[number];
     for (std::size_t side = 0; side < 3; ++side) {
-      if (face.inside(side, p) < -simplified.margin()) return;
+      if (face.inside(side, p) < -around) return;
     }
     const double deviation = face.height(p) - place.z;
     if (!(std::abs(deviation) <= std::abs(found))) found = deviation;
@@ -167,7 +187,7 @@ std::vector<std::uint8_t> folded_faces(const PlanBins& bins, const Workers& work
         const PlanRelation how = relation(face, faces[other], 0);
         if (how.apart) return;
         const double shared = common(face, faces[other], how, 0).area();
-        if (shared > bins.margin() * std::min(face.perimeter, faces[other].perimeter)) folded[n] = 1;
+        if (shared > bins.rim() * std::min(face.perimeter, faces[other].perimeter)) folded[n] = 1;
       });
     }
     progress.advance(1.0 / static_cast<double>(blocks));

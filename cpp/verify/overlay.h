@@ -49,7 +49,8 @@ struct Overlay {
   const PlanBins& simplified;
   const std::vector<std::uint8_t>& folded;  // simplified faces that others lie above or below
   const Tolerance& tolerance;
-  double z_rounding;  // metres, of a difference of two heights
+  double margin;      // outward of all cuts, metres
+  double z_rounding;  // of a difference of two heights
 
   // All pieces of the original's faces [first, last). Any thread.
   PieceSummary pieces_of(std::size_t first, std::size_t last, CoveredShares& covered) const;

@@ -24,7 +24,7 @@ PlanBox around(const std::vector<PlanFace>& faces) {
 
 }  // namespace
 
-PlanBins::PlanBins(std::vector<PlanFace> faces, double margin) : faces_(std::move(faces)), margin_(margin) {
+PlanBins::PlanBins(std::vector<PlanFace> faces, double rim) : faces_(std::move(faces)), rim_(rim) {
   const PlanBox all = around(faces_);
   const double wide = all.high.x - all.low.x, high = all.high.y - all.low.y;
   origin_ = all.low;

@@ -14,11 +14,12 @@ namespace sightbound {
 // About as many bins as faces. 150 bytes a face, and 4 for each bin that its box meets.
 class PlanBins {
  public:
-  // Keeps the faces. Those without width are in no bin.
-  PlanBins(std::vector<PlanFace> faces, double margin);
+  // Keeps the faces. Those without width are in no bin. What is no wider than `rim` may come of the rounding
+  // of coordinates and is no defect.
+  PlanBins(std::vector<PlanFace> faces, double rim);
 
   const std::vector<PlanFace>& faces() const { return faces_; }
-  double margin() const { return margin_; }
+  double rim() const { return rim_; }
 
   // visit(number) for each face whose box meets the box, once each, in an order that depends on the box
   // alone.
@@ -55,7 +56,7 @@ class PlanBins {
   }
 
   std::vector<PlanFace> faces_;
-  double margin_;
+  double rim_;
   Xy origin_;
   double side_ = 1;
   int cols_ = 1, rows_ = 1;

@@ -5,7 +5,8 @@
 // polygon that comes out holds all of the true piece but a rim thinner than the rounding, which the slack of
 // heights pays for. Notation: u = 2^-53, M = the largest coordinate in plan, w = the least height of a
 // triangle in plan, G = (rise over the triangle) / w, at least its slope.
-//   signed distance of a place from a side    6 u 2M       < margin = 2^-46 M
+//   a place in this frame                     16 u M
+//   signed distance of a place from a side    6 u 2M       all three < margin = 2^-46 M = 128 u M
 //   a cut's place                             2 u M
 //   height at a place by barycentric weights  34 u M G     < G margin
 #pragma once

@@ -41,8 +41,9 @@ Reach reach_of(const OriginalSurface& original, const Tin& simplified) {
   return reach;
 }
 
-// Places of either came through coordinates of the CRS, each of them rounded a few times.
-double rounding_in_crs(const Tin& tin) {
+// Places of a TIN came through coordinates of the CRS, each of them rounded a few times: borders and faces
+// that differ by less are not told apart.
+double rim_of(const Tin& tin) {
   return 0x1p-50 * std::max(std::abs(tin.origin.x), std::abs(tin.origin.y)) * tin.metres_per_unit;
 }
 
@@ -59,9 +60,11 @@ void count_bad_faces(const PlanBins& bins, const std::vector<std::uint8_t>& fold
     if (is_bad && bad.count++ == 0) bad.first = n;
   };
   for (std::size_t n = 0; n < bins.faces().size(); ++n) {
-    count(report.flipped, n, bins.faces()[n].is_flipped);
+    const PlanFace& face = bins.faces()[n];
+    const bool has_width = face.twice_area > bins.rim() * face.perimeter;
+    count(report.flipped, n, has_width && face.is_flipped);
     count(report.folded, n, folded[n] != 0);
-    count(report.degenerate, n, bins.faces()[n].twice_area == 0);
+    count(report.degenerate, n, !has_width);
   }
 }
 
@@ -84,7 +87,7 @@ Area surplus_of(const PlanBins& bins, const CoveredShares& covered, const Tin& f
   for (std::size_t n = 0; n < bins.faces().size(); ++n) {
     const PlanFace& face = bins.faces()[n];
     const double beyond = 0.5 * face.twice_area * (1 - covered.of(n));
-    if (!(beyond > bins.margin() * face.perimeter)) continue;  // a rim of rounding
+    if (!(beyond > bins.rim() * face.perimeter)) continue;
     surplus.m2 += beyond;
     if (beyond <= largest) continue;
     largest = beyond;
@@ -132,13 +135,13 @@ VerifyReport verify_heights(const OriginalSurface& original, const Tin& simplifi
   check_tolerance(tolerance, used);
   const Workers workers(options.threads);
   const Reach reach = reach_of(original, simplified);
-  const double margin = plan_margin(reach.plan) + rounding_in_crs(simplified);
+  const double margin = plan_margin(reach.plan), rim = margin + rim_of(simplified);
 
   progress.begin(0.2, 1);
-  const PlanBins bins(plan_faces(simplified, margin), margin);
+  const PlanBins bins(plan_faces(simplified, margin), rim);
   const std::vector<std::uint8_t> folded = folded_faces(bins, workers, progress);
   progress.begin(0.6, 1);
-  const Overlay overlay{original, bins, folded, tolerance, 0x1p-50 * reach.height};
+  const Overlay overlay{original, bins, folded, tolerance, margin, 0x1p-50 * reach.height};
   CoveredShares covered(simplified.faces.size());
   const PieceSummary pieces = all_pieces(overlay, covered, workers, progress);
   if (pieces.pieces == 0)

@@ -54,6 +54,17 @@ TEST(Geotransform, WindowsAndFlipsKeepEverySampleInPlace) {
   }
 }
 
+// Coordinates of 2^-30 m: thousandths of what the CRS's doubles can tell apart.
+TEST(Geotransform, SeenFromNearbyNothingIsLost) {
+  const Coefficients c{5e8, 0x1p-30, 0, -3e8, 0, -0x1p-29};
+  const Geotransform g(c), moved = g.of_window({5, 3, 4, 4}).of_flipped(4);
+  EXPECT_EQ(moved.coefficients()[0], 5e8);
+  EXPECT_EQ(moved.lost().x, 5 * 0x1p-30);
+  const Geotransform there = moved.seen_from({5e8 - 1, -3e8 + 2}, 2);
+  EXPECT_EQ(there.of_sample(1, 2).x, 2 * (1 + 6.5 * 0x1p-30));
+  EXPECT_EQ(there.of_sample(1, 2).y, 2 * (-2 - 4.5 * 0x1p-29));  // row 3 + (4 - 1 - 2)
+}
+
 TEST(Geotransform, TheGroundsNorthWestSouthEastDiagonal) {
   EXPECT_FALSE(Geotransform(kNorthUp).diagonal_is_anti());
   EXPECT_TRUE(Geotransform(kSouthUp).diagonal_is_anti());
