@@ -9,7 +9,7 @@
 
 namespace sightbound {
 
-Envelope::Envelope(const Original& original) : original_(original), margin_(2 * original.rounding()) {}
+Envelope::Envelope(const Original& original) : original_(original), margin_(original.margin()) {}
 
 HeightInterval Envelope::heights_for(const EdgeStar& star, const Point& p, double most) const {
   const int end = star.sides();
@@ -88,13 +88,17 @@ template <bool kVarying>
 Deviation largest(const Original& original, const std::array<Point, 3>& corner) {
   Deviation found;
   const auto add = [&](const Original::Local& here, double height) {
-    // The envelope was shrunk by the rounding: within it, nothing exceeds the tolerance.
     double off = std::abs(height - here.height);
-    const bool within = off <= (here.tolerance > 0 ? here.tolerance : original.rounding());
+    if (here.tolerance == 0 && off <= original.rounding()) {  // the surface is the original's
+      found.metres = std::max(found.metres, original.written());
+      return;
+    }
+    // The envelope was shrunk by the rounding: within it, nothing exceeds the tolerance.
+    const bool judged = here.tolerance >= original.margin(), within = off <= here.tolerance;
     off += original.rounding();
-    if (within) off = std::min(off, here.tolerance);
+    if (judged && within) off = std::min(off, here.tolerance);
     found.metres = std::max(found.metres, off);
-    if (off > found.ratio * here.tolerance) found.ratio = off / here.tolerance;
+    if (judged || !within) found.ratio = std::max(found.ratio, off / here.tolerance);
   };
   for (std::size_t i = 0; i < 3; ++i) {
     const Point &a = corner[i], &b = corner[(i + 1) % 3];

@@ -45,8 +45,7 @@ class Envelope {
   void narrow_inside(const Point& a, const Point& b, const Point& p, double most, HeightInterval& z) const;
 
   const Original& original_;
-  // Taken off the tolerance: once for the test, once for whoever checks it.
-  double margin_;
+  double margin_;  // Original::margin()
 };
 
 struct Deviation {

@@ -22,8 +22,9 @@ class Original {
   };
 
   // Of a window of the DEM, for places in it: `tolerance` of each sample, or empty for the constant. The
-  // grids are the window's and must outlive this.
-  Original(const Grid<float>& heights, const Grid<float>& tolerance, double constant, const Window& window);
+  // grids are the window's and must outlive this. `place_rounding`: place_rounding.h.
+  Original(const Grid<float>& heights, const Grid<float>& tolerance, double constant, const Window& window,
+           double place_rounding);
 
   bool varying() const { return !tolerance_.empty(); }
   double constant() const { return constant_; }
@@ -31,8 +32,12 @@ class Original {
   const float* heights(int row) const { return heights_.row(row - window_.row); }
   const float* tolerances(int row) const { return tolerance_.row(row - window_.row); }
   int first_col() const { return window_.col; }
-  // What rounding may add to a deviation, places as written in a CRS included, in metres.
+  // What rounding may add to a deviation, in metres: in all, and by places as written in a CRS alone.
   double rounding() const { return rounding_; }
+  double written() const { return written_; }
+  // Taken off the tolerance: once for the test, once for whoever checks it. Where a tolerance is less,
+  // nothing but what is coplanar goes.
+  double margin() const { return 2 * rounding_; }
 
   // On the edge from one sample to another.
   template <bool kVarying>
@@ -55,6 +60,7 @@ class Original {
   // Anywhere in the footprint: samples that do not matter may be nodata.
   template <bool kVarying>
   Local under(const Point& p) const;
+  double tolerance_under(const Point& p) const { return varying() ? under<true>(p).tolerance : constant_; }
 
   // f(local, t) where the line from a to b crosses columns, rows and diagonals, t between 0 at a and 1 at b.
   // Along the outline a crossing at a sample may be rounded towards nodata and be NaN: such samples are on
@@ -82,7 +88,7 @@ class Original {
 
   const Grid<float>& heights_;
   const Grid<float>& tolerance_;
-  double constant_, rounding_;
+  double constant_, rounding_, written_;
   Window window_;
 };
 

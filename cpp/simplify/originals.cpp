@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/number_text.h"
+#include "terrain/tin_cleaning.h"
 
 namespace sightbound {
 
@@ -17,7 +18,10 @@ constexpr std::size_t kBytesOfSample = 16;
 
 void check_values(const DemWindow& read) {
   for (const float height : read.heights.values()) {
-    if (std::isinf(height)) throw InvalidInput("A height of the DEM is infinite; make it nodata (NaN).");
+    if (std::abs(height) > static_cast<float>(kLargestCoordinate)) {
+      throw InvalidInput("A height of the DEM is " + number_text(height) +
+                         "; it must be within 1e9. Make it nodata (NaN).");
+    }
   }
   for (std::size_t i = 0; i < read.tolerance.size(); ++i) {
     const float tolerance = read.tolerance.values()[i];
@@ -42,8 +46,10 @@ void Originals::set_factor(double factor) {
   part_.reset();
 }
 
-Originals::Part::Part(DemWindow read, double tolerance_m, const Window& where)
-    : window(where), dem(std::move(read)), original(dem.heights, dem.tolerance, tolerance_m, where) {}
+Originals::Part::Part(DemWindow read, double tolerance_m, const Window& where, double place_rounding)
+    : window(where),
+      dem(std::move(read)),
+      original(dem.heights, dem.tolerance, tolerance_m, where, place_rounding) {}
 
 const Originals::Part& Originals::rows_of(int first_row, int last_row, Progress& progress) {
   Window window{0, first_row, cols(), last_row - first_row + 1};
@@ -53,8 +59,16 @@ const Originals::Part& Originals::rows_of(int first_row, int last_row, Progress&
   DemWindow read = dem_.read(window, progress);
   check_values(read);
   if (factor_ != 1) multiply(read.tolerance, factor_);
-  part_.emplace(std::move(read), factor_ * tolerance_m_, window);
-  rounding_ = std::max(rounding_, part_->original.rounding());
+  const double tolerance = factor_ * tolerance_m_;
+  part_.emplace(std::move(read), tolerance, window, place_rounding_);
+  const Original& original = part_->original;
+  if (!original.varying() && tolerance > 0 && tolerance < original.written()) {
+    throw InvalidInput("tolerance is " + number_text(tolerance) +
+                       "; on slopes as steep as here coordinates as numbers of 53 bits are good for " +
+                       number_text(original.written()) +
+                       " m. Give more, or 0, or take an offset off the CRS.");
+  }
+  margin_ = std::max(margin_, original.margin());
   return *part_;
 }
 

@@ -11,6 +11,7 @@
 #include "base/number_text.h"
 #include "base/parallel.h"
 #include "simplify/block_decimation.h"
+#include "simplify/place_rounding.h"
 #include "simplify/written_tin.h"
 
 namespace sightbound {
@@ -216,7 +217,8 @@ std::vector<SimplifiedTin> simplify_dem_levels(DemWindows& dem, const DemPlace& 
   check_factors(factors, options);
   const MemoryBudget budget(options.memory_bytes);
   const Workers workers(options.threads);
-  Originals originals(dem, options.tolerance_m, options.samples_at_once);
+  Originals originals(dem, options.tolerance_m, place_rounding(place, dem.rows(), dem.cols()),
+                      options.samples_at_once);
   const std::size_t bytes = bytes_of_blocks(originals, options.block, workers.count());
   budget.require(bytes, "Simplifying the DEM", "Give a part of it.");
   const LineRules lines = line_rules(options, place);
@@ -251,7 +253,7 @@ std::vector<SimplifiedTin> simplify_dem_levels(DemWindows& dem, const DemPlace& 
     WrittenTin written = written_tin(decimation.mesh(), place, originals, workers, progress);
     written.made.report.faces_before = done.faces_before;
     written.made.report.break_line_edges_lost = done.break_line_edges_lost;
-    written.made.report.kept_for_rounding_m = 2 * originals.rounding();
+    written.made.report.kept_for_rounding_m = originals.margin();
     if (!levels.empty())
       levels.back().coarser_vertex = coarser(number, levels.back(), decimation.followed(), written.number);
     levels.push_back(std::move(written.made));

@@ -5,7 +5,8 @@
 //   |height of the simplified TIN - height of the original| <= tolerance there,
 // where the original is the regular TIN of a DEM (dem.h) and the tolerance is a constant or linear on each of
 // its triangles. The footprint stays, holes and islands of nodata too; no triangle is turned over, folded or
-// without area. A tolerance of 0 removes only what is coplanar. The same bytes for any number of threads.
+// without area. A tolerance of 0 removes only what is coplanar. All this of coordinates as written, which are
+// doubles (place_rounding.h). The same bytes for any number of threads.
 // Method, and what is certified: docs/algorithms/simplify.md.
 #pragma once
 
@@ -72,9 +73,11 @@ struct SimplifyOptions {
 
 struct SimplifyReport {
   std::size_t faces_before = 0, faces_after = 0;
-  double largest_deviation_m = 0;         // certified: nowhere more
-  double largest_ratio = 0;               // of deviation to tolerance, certified; 0 where both are 0
-  double kept_for_rounding_m = 0;         // of the tolerance
+  double largest_deviation_m = 0;  // certified: nowhere more
+  double largest_ratio = 0;        // of deviation to tolerance, certified; 0 where both are 0
+  // Of the tolerance, largest anywhere. On triangles of the DEM with a corner whose tolerance is less the
+  // result, as written, may be beyond it by as much, and largest_ratio does not tell of them.
+  double kept_for_rounding_m = 0;
   std::size_t break_line_edges_lost = 0;  // that have no terrain on either side
 };
 
@@ -91,8 +94,9 @@ struct SimplifiedTin {
 // Reads the DEM as it goes along, some eight times, and holds a band of its rows, 11 MiB a thread, and 72
 // bytes for each face that the first pass leaves: on rough ground some 70,000 for a million samples at 5 m.
 // Tolerance and samples to keep are those of the windows: a `tolerance_m` holds where they bring none. Throws
-// InvalidInput (a tolerance that is negative or not finite, an infinite height, fewer than 2 x 2 samples, no
-// triangle, sizes that do not agree, more than 2^20 samples a side), OverBudget (as soon as what is left does
+// InvalidInput (a tolerance that is negative or not finite, a height or coordinate beyond 1e9, cells or a
+// tolerance too small for coordinates as doubles, fewer than 2 x 2 samples, no triangle, sizes that do not
+// agree, more than 2^20 samples a side), OverBudget (as soon as what is left does
 // not fit, or is more than 2^29 faces), Cancelled. On rough ground 16 microseconds of processor a sample for
 // a tolerance of 5 m, 60 for 1 m (docs/performance.md). Advances `progress` by 1 in all.
 SimplifiedTin simplify_dem(DemWindows&, const DemPlace&, const SimplifyOptions&, Progress&);

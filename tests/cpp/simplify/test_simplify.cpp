@@ -219,7 +219,7 @@ TEST(Simplify, RefusesWhatItCannotUse) {
   EXPECT_TRUE(says(message(Grid<float>(1, 5, 0.0f), within(1)), "1 x 5"));
   EXPECT_TRUE(says(message(Grid<float>(4, 5, kNan), within(1)), "no surface"));
   EXPECT_TRUE(
-      says(message(Grid<float>(3, 3, std::numeric_limits<float>::infinity()), within(1)), "infinite"));
+      says(message(Grid<float>(3, 3, std::numeric_limits<float>::infinity()), within(1)), "height of the DEM is inf"));
   SimplifyOptions options;
   options.tolerance = Grid<float>(4, 4, 1.0f);
   EXPECT_TRUE(says(message(good, std::move(options)), "tolerance has 4 x 4"));
