@@ -22,6 +22,7 @@ from .feedback import until_cancelled
 from .text import tr
 from .values import given
 
+
 def places(name, label, kind=QgsProcessing.SourceType.TypeVectorAnyGeometry):
     return QgsProcessingParameterFeatureSource(name, label, [kind], None, True)
 

@@ -154,17 +154,25 @@ def float_array(value: Any) -> FloatArray:
     return np.ascontiguousarray(value, dtype=np.float32)
 
 
-def polyline(name: str, value: Any) -> Any:
-    """(n, 2) float64 from n places (x, y), or (x, y, z) of which z does not count."""
+def polylines(name: str, value: Any) -> list[Any]:
+    """Arrays (n, 2) of float64 from sequences of two places (x, y) or more; of (x, y, z) z does not count. None for no line."""
     import numpy as np
 
-    try:
-        places = np.ascontiguousarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} is {value!r}; it must be a sequence of (x, y).") from None
-    if places.ndim != 2 or places.shape[1] not in (2, 3):
-        raise ValueError(f"{name} has shape {places.shape}; it must be a sequence of (x, y).")
-    return np.ascontiguousarray(places[:, :2])
+    lines = [] if value is None else listed(value)
+    if lines is None:
+        raise ValueError(f"{name} is {value!r}; it must be a sequence of lines, each a sequence of (x, y).")
+    found = []
+    for number, line in enumerate(lines, 1):
+        try:
+            places = np.ascontiguousarray(line, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ValueError(f"{name}: line {number} is {line!r}; it must be a sequence of (x, y).") from None
+        if places.ndim != 2 or places.shape[1] not in (2, 3) or len(places) < 2:
+            raise ValueError(
+                f"{name}: line {number} has shape {places.shape}; it must be a sequence of two (x, y) or more. For one line write [line]."
+            )
+        found.append(np.ascontiguousarray(places[:, :2]))
+    return found
 
 
 def word(name: str, value: Any) -> str:

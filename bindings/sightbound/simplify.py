@@ -128,9 +128,9 @@ def dem_to_tins(
     dem: Dem,
     *,
     tolerance: Quantity = None,
-    factors: Sequence[float] = (1.0, 2.0, 4.0),
+    factors: Sequence[float] | None = None,
     error_model: ErrorModel | None = None,
-    confidences: Sequence[float] = (0.5, 0.8, 0.95),
+    confidences: Sequence[float] | None = None,
     extent: Box | None = None,
     keep: npt.ArrayLike | None = None,
     keep_border: bool = False,
@@ -148,8 +148,8 @@ def dem_to_tins(
 
     Args:
         tolerance: as of dem_to_tin(), of the finest.
-        factors: by which the tolerances of the TINs are larger; they ascend and begin with 1.
-        confidences: of the error, one for each TIN, ascending.
+        factors: with a tolerance: by which those of the TINs are larger; they ascend and begin with 1. None for 1, 2 and 4.
+        confidences: with an error model: one for each TIN, ascending. None for 0.5, 0.8 and 0.95.
         dem, error_model, extent, keep, keep_border, border_tolerance, break_lines, break_line_tolerance, threads, memory_budget,
             progress: as of dem_to_tin().
 
@@ -159,7 +159,11 @@ def dem_to_tins(
     options = _options(
         dem, tolerance, error_model, extent, keep, keep_border, border_tolerance, break_lines, break_line_tolerance, threads, memory_budget
     )
+    if (factors if error_model is not None else confidences) is not None:
+        raise ValueError("factors go with a tolerance, confidences with an error model.")
     name, given = ("factors", factors) if error_model is None else ("confidences", confidences)
+    if given is None:
+        given = (1.0, 2.0, 4.0) if error_model is None else (0.5, 0.8, 0.95)
     levels = arguments.listed(given)
     if not levels:
         raise ValueError(f"{name} is {given!r}; give a number for each TIN.")
@@ -259,8 +263,8 @@ def _options(
         options.set_keep(_like("keep", keep, dem), core_dem(dem).flipped)
     options.keep_border = bool(keep_border)
     options.border_tolerance = arguments.number("border_tolerance", border_tolerance)
-    for number, line in enumerate(break_lines if break_lines is not None else (), 1):
-        options.add_break_line(arguments.polyline(f"break_lines: line {number}", line))
+    for line in arguments.polylines("break_lines", break_lines):
+        options.add_break_line(line)
     if break_line_tolerance is not None:
         options.break_line_tolerance = arguments.number("break_line_tolerance", break_line_tolerance)
     options.threads = arguments.threads(threads)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/error.h"
 #include "base/number_text.h"
@@ -39,12 +40,18 @@ std::vector<double> factors_of(const DemToTinOptions& options) {
 
 // As edges of the TIN of a window, and how far each may be from them.
 void set_break_lines(const DemToTinOptions& options, const DemPlace& place, const Window& window,
-                     SimplifyOptions& simplify) {
+                     SimplifyOptions& simplify, std::vector<std::string>& warnings) {
   std::vector<std::vector<Xy>> lines = options.break_lines;
+  std::size_t beside = 0;
   for (std::vector<Xy>& line : lines) {
     for (Xy& p : line) p = place.geotransform.to_raster(p.x, p.y);
+    beside += line_chains(std::span(&line, 1), window.rows, window.cols).empty() ? 1 : 0;
   }
   simplify.break_lines = line_chains(lines, window.rows, window.cols);
+  if (beside > 0) {
+    warnings.push_back(std::to_string(beside) + " of " + std::to_string(lines.size()) +
+                       " break lines do not cross the DEM; check their CRS.");
+  }
   const auto& g = place.geotransform.coefficients();
   const double cell = std::max(std::hypot(g[1], g[4]), std::hypot(g[2], g[5])) * place.metres_per_unit;
   simplify.break_line_tolerance_m = options.break_line_tolerance_m.value_or(cell);
@@ -123,7 +130,7 @@ DemToTin run_dem_to_tin(const DemSource& source, const ErrorModel& model, const 
   simplify.memory_bytes = options.memory_budget;
   const DemPlace place{source.geotransform().of_window(window), metres_per_unit,
                        horizontal_crs(source.crs_wkt())};
-  set_break_lines(options, place, window, simplify);
+  set_break_lines(options, place, window, simplify, result.warnings);
   progress.begin(0.97, 1);
   result.levels = simplify_dem_levels(windows, place, simplify, result.factors, progress);
   result.least_tolerance_m = windows.least();

@@ -2,9 +2,9 @@
 #include "simplify/block_decimation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -42,22 +42,35 @@ void set_kinds(PlanMesh& mesh, const Originals::Part& part, const Window& window
   }
 }
 
-// Edges of lines that have an end without terrain; those on a rim count in one block only.
+// Edges of lines without terrain on either side; those on a rim count in one block only.
 std::size_t count_lost(const Grid<std::uint8_t>& lines, const Originals::Part& part, const Window& window,
                        const KindRules& rules) {
   if (lines.empty()) return 0;
   const auto there = [&](int r, int c) {
-    return !std::isnan(
-        part.dem.heights.at(window.row + r - part.window.row, window.col + c - part.window.col));
+    const int row = window.row + r - part.window.row, col = window.col + c - part.window.col;
+    // What another part of the DEM holds is taken to be there.
+    if (row < 0 || row >= part.window.rows) return window.row + r >= 0 && window.row + r < rules.rows;
+    return col >= 0 && col < part.window.cols && !std::isnan(part.dem.heights.at(row, col));
   };
+  // Each edge, and the third corners of the triangles on its sides.
+  struct Sides {
+    LineBits bit;
+    int down, right;
+    std::array<std::array<int, 2>, 2> third;  // rows and columns further
+  };
+  constexpr std::array<Sides, 3> kEdges{{{kLineEast, 0, 1, {{{1, 1}, {-1, 0}}}},
+                                         {kLineSouth, 1, 0, {{{1, 1}, {0, -1}}}},
+                                         {kLineSouthEast, 1, 1, {{{0, 1}, {1, 0}}}}}};
   const int rows = window.row_end() == rules.rows ? window.rows : window.rows - 1;
   const int cols = window.col_end() == rules.cols ? window.cols : window.cols - 1;
   std::size_t lost = 0;
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < cols; ++c) {
-      for (const auto& [bit, down, right] :
-           {std::tuple{kLineEast, 0, 1}, {kLineSouth, 1, 0}, {kLineSouthEast, 1, 1}}) {
-        if ((lines.at(r, c) & bit) != 0 && !(there(r, c) && there(r + down, c + right))) ++lost;
+      for (const Sides& edge : kEdges) {
+        if ((lines.at(r, c) & edge.bit) == 0) continue;
+        const bool side = there(r + edge.third[0][0], c + edge.third[0][1]) ||
+                          there(r + edge.third[1][0], c + edge.third[1][1]);
+        if (!there(r, c) || !there(r + edge.down, c + edge.right) || !side) ++lost;
       }
     }
   }

@@ -87,7 +87,7 @@ bool gather(const PlanMesh& mesh, std::int32_t corner, bool prefer_next, EdgeSta
   star.b = a_is_next ? one : other;
   const std::int32_t beyond = mesh.opposite(PlanMesh::previous(corner));  // the other triangle's apex
   const bool outline_edge = beyond == PlanMesh::kNone;
-  const bool line_edge = mesh.line(PlanMesh::previous(corner)) != 0;
+  const bool line_edge = mesh.line(PlanMesh::previous(corner)).break_line;
   if (!may_go(mesh.kind(star.b), outline_edge, line_edge)) return false;
   if (outline_edge) {
     if (!ring_of_outline_edge(mesh, corner, star)) return false;

@@ -5,9 +5,14 @@
 //   d - E <= w (z - known) <= d + E
 #include "simplify/envelope.h"
 
+#include <cmath>
 #include <limits>
 
 namespace sightbound {
+
+namespace {
+constexpr double kImpossible = std::numeric_limits<double>::infinity();
+}  // namespace
 
 Envelope::Envelope(const Original& original) : original_(original), margin_(original.margin()) {}
 
@@ -25,6 +30,8 @@ HeightInterval Envelope::heights_at_a(const EdgeStar& star, double most) const {
 template <bool kVarying>
 HeightInterval Envelope::find(const EdgeStar& star, const Point& p, int begin, int end, double most) const {
   const Original::Local here = original_.under<kVarying>(p);
+  // Where an outline has advanced there may be nothing to compare with: no vertex goes there.
+  if (std::isnan(here.height)) return {kImpossible, -kImpossible};
   HeightInterval z{here.height - here.tolerance + margin_, here.height + here.tolerance - margin_};
   for (int i = begin; i < end && z.missing() <= most; ++i) {
     const auto n = static_cast<std::size_t>(i);
@@ -78,8 +85,7 @@ void Envelope::narrow_inside(const Point& a, const Point& b, const Point& p, dou
   });
   z = {a.z + low * area, a.z + high * area};
   // What was not looked at must not pass by a rounding.
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  if (!all_seen && z.missing() <= most) z = {kNone, -kNone};
+  if (!all_seen && z.missing() <= most) z = {kImpossible, -kImpossible};
 }
 
 namespace {

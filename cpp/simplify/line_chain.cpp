@@ -19,11 +19,11 @@ struct Sample {
   int row, col;
 };
 
-// The part of a to b with columns of 0 to cols - 1 and rows of 0 to rows - 1 (Liang and Barsky 1984).
+// The part of a to b on the raster's cells (Liang and Barsky 1984).
 std::optional<std::pair<Xy, Xy>> clipped(const Xy& a, const Xy& b, int rows, int cols) {
   double begin = 0, end = 1;
   const auto clip = [&](double from, double step, double last) {
-    for (const auto& [out, in] : {std::pair{-step, from}, std::pair{step, last - from}}) {
+    for (const auto& [out, in] : {std::pair{-step, from + 0.5}, std::pair{step, last + 0.5 - from}}) {
       if (out == 0 && in < 0) end = -1;
       if (out < 0) begin = std::max(begin, in / out);
       if (out > 0) end = std::min(end, in / out);
@@ -40,13 +40,25 @@ class Chain {
  public:
   Chain(int rows, int cols, std::vector<LineEdge>& edges) : rows_(rows), cols_(cols), edges_(edges) {}
 
+  // One sample for each column (row, where that runs faster), each a neighbour of the one before.
   void follow(const Xy& a, const Xy& b) {
     const double dx = b.x - a.x, dy = b.y - a.y;
+    const bool by_columns = std::abs(dx) >= std::abs(dy);
     Sample here = nearest(a);
-    const int steps = static_cast<int>(std::ceil(std::max(std::abs(dx), std::abs(dy))));
-    for (int n = 1; n <= steps; ++n) {
-      const double t = static_cast<double>(n) / steps;
-      const Sample next = nearest({a.x + t * dx, a.y + t * dy});
+    const Sample end = nearest(b);
+    while (here.row != end.row || here.col != end.col) {
+      Sample next = here;
+      int& major = by_columns ? next.col : next.row;
+      int& minor = by_columns ? next.row : next.col;
+      const int last = by_columns ? end.col : end.row;
+      if (major == last) {  // only the ends round otherwise than the line
+        minor += towards(minor, by_columns ? end.row : end.col);
+      } else {
+        major += towards(major, last);
+        const double t = std::clamp(by_columns ? (major - a.x) / dx : (major - a.y) / dy, 0.0, 1.0);
+        const Sample on_line = nearest({a.x + t * dx, a.y + t * dy});
+        minor += towards(minor, by_columns ? on_line.row : on_line.col);
+      }
       step(here, next, a, b);
       here = next;
     }
@@ -57,7 +69,8 @@ class Chain {
     return {std::clamp(static_cast<int>(std::lround(p.y)), 0, rows_ - 1),
             std::clamp(static_cast<int>(std::lround(p.x)), 0, cols_ - 1)};
   }
-  // Neighbours at most.
+  static int towards(int from, int to) { return (to > from) - (to < from); }
+  // Neighbours.
   void step(const Sample& p, const Sample& q, const Xy& a, const Xy& b) {
     const int down = q.row - p.row, right = q.col - p.col;
     if (down * right < 0) {
@@ -68,7 +81,7 @@ class Chain {
       const Sample& between = off(one) <= off(other) ? one : other;
       add(p, between);
       add(between, q);
-    } else if (down != 0 || right != 0) {
+    } else {
       add(p, q);
     }
   }

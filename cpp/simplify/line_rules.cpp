@@ -8,40 +8,37 @@ namespace sightbound {
 
 namespace {
 
-constexpr std::int32_t kSteps = PlanMesh::kMostLine - 1;  // of the larger tolerance
-
-// How far edges round `v` have strayed: 0 where they have not, and where the outline is as it was.
-std::int32_t strayed(std::int32_t line) { return std::max(line, 1) - 1; }
-
-// Where a line goes on from a vertex inside, coming from `from`.
+// Where a break line goes on from a vertex inside, coming from `from`.
 std::int32_t next_on_line(const PlanMesh& mesh, std::int32_t v, std::int32_t from) {
   const std::int32_t first = mesh.first_corner(v);
   std::int32_t corner = first;
   do {
     const std::int32_t w = mesh.vertex(PlanMesh::next(corner));
-    if (w != from && mesh.line(PlanMesh::previous(corner)) != 0) return w;
+    if (w != from && mesh.line(PlanMesh::previous(corner)).break_line) return w;
     corner = mesh.counterclockwise(corner);
   } while (corner != first);
   return PlanMesh::kNone;
 }
 
-// Of the edge between two vertices; kNone where there is none.
-std::int32_t line_between(const PlanMesh& mesh, std::int32_t v, std::int32_t w) {
+// The corner opposite to the edge between two vertices; kNone where there is none.
+std::int32_t across(const PlanMesh& mesh, std::int32_t v, std::int32_t w) {
   const std::int32_t corner = mesh.edge(v, w);
-  return corner == PlanMesh::kNone ? PlanMesh::kNone : mesh.line(PlanMesh::previous(corner));
+  return corner == PlanMesh::kNone ? PlanMesh::kNone : PlanMesh::previous(corner);
+}
+
+// Samples of the rim of a block are the next block's too, those in between perhaps that one's alone: an edge
+// along it would not meet the next block's. All of them stay, so that what stays is asked.
+bool may_lie_along_a_rim(const PlanMesh& mesh, std::int32_t v, std::int32_t w) {
+  const bool stay = mesh.kind(v) >= VertexKind::kFixed && mesh.kind(w) >= VertexKind::kFixed;
+  return stay && (mesh.step_x(v) == mesh.step_x(w) || mesh.step_y(v) == mesh.step_y(w));
 }
 
 }  // namespace
 
 LineRules::LineRules(double border_m, double break_line_m, const std::array<double, 4>& metres)
-    : metres_(metres) {
-  const double largest = std::max(border_m, break_line_m);
-  if (!(largest > 0)) return;
-  step_m_ = largest / kSteps;
-  const auto most = [&](double tolerance) { return static_cast<std::int32_t>(tolerance / step_m_); };
-  most_border_ = most(border_m);
-  most_break_line_ = most(break_line_m);
-}
+    : metres_(metres),
+      border_step_m_(border_m / PlanMesh::kMostStrayed),
+      break_line_step_m_(break_line_m / PlanMesh::kMostStrayed) {}
 
 std::optional<LineRules::Edge> LineRules::without_b(const PlanMesh& mesh, const EdgeStar& star) const {
   const bool outline = star.right < 0;
@@ -54,24 +51,29 @@ std::optional<LineRules::Edge> LineRules::without_b(const PlanMesh& mesh, const 
     const Point n = mesh.place(edge.to);
     edge.advances =
         (b_is_first ? area2(star.place_a, star.place_b, n) : area2(n, star.place_b, star.place_a)) < 0;
-    if (edge.advances && mesh.edge(star.a, edge.to) != PlanMesh::kNone) return {};  // it would close a hole
+    // Over a hole of three edges it would close it. (Where it draws back, what goes lies in the star.)
+    if (edge.advances && mesh.edge(star.a, edge.to) != PlanMesh::kNone) return {};
   } else {
     edge.to = next_on_line(mesh, star.b, star.a);
-    if (edge.to == PlanMesh::kNone || line_between(mesh, star.a, edge.to) > 0) return {};
+    if (edge.to == PlanMesh::kNone) return {};
+    const std::int32_t there = across(mesh, star.a, edge.to);
+    if (there != PlanMesh::kNone && mesh.line(there).break_line) return {};
   }
-  // An edge along the rim of a block would not meet the next block's.
-  if (mesh.kind(star.a) == VertexKind::kRim && mesh.kind(edge.to) == VertexKind::kRim) return {};
-  const std::int32_t before = std::max(strayed(mesh.line(PlanMesh::previous(star.corner))),
-                                       strayed(line_between(mesh, star.b, edge.to)));
-  const std::int32_t most = outline ? most_border_ : most_break_line_,
-                     more = steps(star.place_b, star.place_a, mesh.place(edge.to));
-  if (more > most - before) return {};
-  edge.line = 1 + before + more;
+  if (may_lie_along_a_rim(mesh, star.a, edge.to)) return {};
+  const auto one = mesh.line(PlanMesh::previous(star.corner)),
+             other = mesh.line(across(mesh, star.b, edge.to));
+  const double off = metres_off(star.place_b, star.place_a, mesh.place(edge.to));
+  const double step = outline ? border_step_m_ : break_line_step_m_;
+  if (off > 0 && !(step > 0)) return {};
+  constexpr double kRounding = 1 + 1e-9;
+  const double strayed =
+      std::max(one.strayed, other.strayed) + (off > 0 ? std::ceil(kRounding * off / step) : 0);
+  if (strayed > PlanMesh::kMostStrayed) return {};
+  edge.state = {!outline, static_cast<std::int32_t>(strayed)};
   return edge;
 }
 
-// By how much a place lies off an edge, rounded up; 0 only when it lies on it.
-std::int32_t LineRules::steps(const Point& b, const Point& from, const Point& to) const {
+double LineRules::metres_off(const Point& b, const Point& from, const Point& to) const {
   const auto in_metres = [&](const Point& p, const Point& q) {
     const double x = q.x - p.x, y = q.y - p.y;
     return std::array<double, 2>{x * metres_[0] + y * metres_[2], x * metres_[1] + y * metres_[3]};
@@ -80,9 +82,7 @@ std::int32_t LineRules::steps(const Point& b, const Point& from, const Point& to
   const double along = off[0] * way[0] + off[1] * way[1], length2 = way[0] * way[0] + way[1] * way[1];
   const double t = std::clamp(along / length2, 0.0, 1.0);
   if (t > 0 && t < 1 && area2(from, b, to) == 0) return 0;
-  constexpr double kRounding = 1 + 1e-9;
-  const double steps = std::ceil(kRounding * std::hypot(off[0] - t * way[0], off[1] - t * way[1]) / step_m_);
-  return steps < PlanMesh::kMostLine ? static_cast<std::int32_t>(steps) : PlanMesh::kMostLine;
+  return std::hypot(off[0] - t * way[0], off[1] - t * way[1]);
 }
 
 }  // namespace sightbound

@@ -5,7 +5,8 @@
 // from both by the vertex's distance h from it, either way: the two are nowhere further than h from the one
 // (distance from an edge is a convex function), nor the one from the two (going along them, the nearest place
 // of the edge runs from its one end to the other). So an edge that takes the place of two which have strayed
-// by s1 and s2 strays by max(s1, s2) + h at most. This is kept with the edge, in steps, rounded up.
+// by s1 and s2 strays by max(s1, s2) + h at most. This is kept with the
+// edge, in steps of its line's tolerance, rounded up.
 #pragma once
 
 #include <array>
@@ -24,11 +25,11 @@ class LineRules {
   // Tolerances in metres. `metres`: of a step by one column (x, y) and by one row, in plan.
   LineRules(double border_m, double break_line_m, const std::array<double, 4>& metres);
 
-  bool outline_moves() const { return most_border_ > 0; }
+  bool outline_moves() const { return border_step_m_ > 0; }
 
   struct Edge {
-    std::int32_t to;        // from vertex a
-    std::int32_t line;      // PlanMesh::line()
+    std::int32_t to;  // from vertex a
+    PlanMesh::LineEdgeState state;
     bool advances = false;  // the outline, over the triangle that this edge makes with b
   };
   // What takes the place of the line's two edges at vertex b of the star, when b is drawn into a along it.
@@ -36,11 +37,11 @@ class LineRules {
   std::optional<Edge> without_b(const PlanMesh&, const EdgeStar&) const;
 
  private:
-  std::int32_t steps(const Point& b, const Point& from, const Point& to) const;
+  // How far off a place lies from an edge, metres; 0 only when it lies on it.
+  double metres_off(const Point& b, const Point& from, const Point& to) const;
 
   std::array<double, 4> metres_{1, 0, 0, 1};
-  double step_m_ = 1;
-  std::int32_t most_border_ = 0, most_break_line_ = 0;  // steps
+  double border_step_m_ = 0, break_line_step_m_ = 0;  // 0: nothing strays
 };
 
 }  // namespace sightbound

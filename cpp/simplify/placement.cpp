@@ -56,7 +56,7 @@ class Search {
     if (!well_shaped(star_, p)) return false;
     const double most = missing_ - kLeastGain * std::abs(missing_);
     const HeightInterval heights = envelope_.heights_for(star_, p, most);
-    if (heights.missing() > most) return false;
+    if (!(heights.missing() <= most)) return false;
     best_ = {p.x, p.y, 0.5 * (heights.low + heights.high)};
     missing_ = heights.missing();
     any_ = true;
@@ -113,10 +113,10 @@ std::optional<Point> place_at_a(const Envelope& envelope, const EdgeStar& star, 
 }  // namespace
 
 std::optional<Point> find_place(const Envelope& envelope, const EdgeStar& star, const QuadricSum& quadric,
-                                Freedom freedom) {
+                                Freedom freedom, bool outline_advances) {
   const bool fixed = freedom == Freedom::kNone || freedom == Freedom::kHeight;
   const auto same = place_without_change(star, fixed);
-  if (same && well_shaped(star, *same)) return same;
+  if (same && !outline_advances && well_shaped(star, *same)) return same;
   if (fixed) return place_at_a(envelope, star, freedom);
   const Point &a = star.place_a, &b = star.place_b;
   Search search(envelope, star, kReach * envelope.tolerance_near(a));
@@ -141,6 +141,7 @@ std::optional<Point> find_room(const Envelope& envelope, const EdgeStar& star) {
   if (!search.visit(p)) return {};
   search.descend(kRoomSteps, length, false);
   const auto best = search.result();
+  if (!best) return {};
   const bool same = best->x == p.x && best->y == p.y && std::abs(best->z - p.z) <= kLeastGain * search.room();
   return same ? std::nullopt : best;
 }

@@ -40,7 +40,7 @@ PlanMesh::PlanMesh(const Grid<float>& heights, const Window& held, const Window&
         return corner;
       };
       const auto mark = [&](int corner, int row, int col, LineBits bit) {
-        return !lines.empty() && (lines.at(row, col) & bit) != 0 ? 1 << line_shift(corner) : 0;
+        return !lines.empty() && (lines.at(row, col) & bit) != 0 ? kBreakLine << line_shift(corner) : 0;
       };
       std::int32_t upper = kNone, lower = kNone;
       if (ends && there(r, c + 1)) {
@@ -139,7 +139,7 @@ void PlanMesh::collapse(std::int32_t corner, std::int32_t kept) {
 void PlanMesh::remove_triangle(std::int32_t apex) {
   const std::int32_t tip = vertex(apex), kept = vertex(next(apex));
   const std::int32_t one = opposite(next(apex)), other = opposite(previous(apex));
-  const std::int32_t line_of_both = std::max(line(next(apex)), line(previous(apex)));
+  const LineEdgeState a = line(next(apex)), b = line(previous(apex));
   if (one != kNone) corners_[at(one)].opposite = other;
   if (other != kNone) corners_[at(other)].opposite = one;
   // Across the edge from tip to kept, seen from `one` and `other`.
@@ -147,19 +147,21 @@ void PlanMesh::remove_triangle(std::int32_t apex) {
   const bool turned = vertex(next(beside)) == tip;
   vertices_[at(tip)].corner = turned ? next(beside) : previous(beside);
   vertices_[at(kept)].corner = turned ? previous(beside) : next(beside);
-  set_line(beside, line_of_both);
+  set_line(beside, {a.break_line || b.break_line, std::max(a.strayed, b.strayed)});
   for (const std::int32_t c : {apex, next(apex), previous(apex)}) corners_[at(c)] = {};
   corners_[at(apex | 3)] = {kNone, 0};
 }
 
-void PlanMesh::set_line(std::int32_t corner, std::int32_t value) {
-  set_line_here(corner, value);
-  if (opposite(corner) != kNone) set_line_here(opposite(corner), value);
+void PlanMesh::set_line(std::int32_t corner, const LineEdgeState& state) {
+  set_line_here(corner, state);
+  if (opposite(corner) != kNone) set_line_here(opposite(corner), state);
 }
 
-void PlanMesh::set_line_here(std::int32_t corner, std::int32_t value) {
+void PlanMesh::set_line_here(std::int32_t corner, const LineEdgeState& state) {
+  constexpr std::int32_t kAll = kBreakLine | kMostStrayed;
   std::int32_t& marks = corners_[at(corner | 3)].opposite;
-  marks = (marks & ~(kMostLine << line_shift(corner))) | (value << line_shift(corner));
+  const std::int32_t bits = state.strayed | (state.break_line ? kBreakLine : 0);
+  marks = (marks & ~(kAll << line_shift(corner))) | (bits << line_shift(corner));
 }
 
 void PlanMesh::join(std::int32_t a, std::int32_t b) {

@@ -73,12 +73,17 @@ class PlanMesh {
   static std::int32_t previous(std::int32_t corner) { return (corner & 3) == 0 ? corner + 2 : corner - 1; }
   std::int32_t vertex(std::int32_t corner) const { return corners_[at(corner)].vertex; }
   std::int32_t opposite(std::int32_t corner) const { return corners_[at(corner)].opposite; }
-  // Of the edge opposite to a corner: 0 = it belongs to no line; else one more than the steps by which it has
-  // strayed from its line (line_rules.h).
-  std::int32_t line(std::int32_t corner) const {
-    return (corners_[at(corner | 3)].opposite >> line_shift(corner)) & kMostLine;
+  // Of the edge opposite to a corner: does it belong to a break line, and by how many steps has it strayed
+  // from where its line or the outline was (line_rules.h)?
+  struct LineEdgeState {
+    bool break_line = false;
+    std::int32_t strayed = 0;
+  };
+  LineEdgeState line(std::int32_t corner) const {
+    const std::int32_t bits = corners_[at(corner | 3)].opposite >> line_shift(corner);
+    return {(bits & kBreakLine) != 0, bits & kMostStrayed};
   }
-  void set_line(std::int32_t corner, std::int32_t value);  // seen from both sides
+  void set_line(std::int32_t corner, const LineEdgeState&);  // seen from both sides
   // Some corner at a vertex; kNone = removed.
   std::int32_t corner_of(std::int32_t vertex) const { return vertices_[at(vertex)].corner; }
   bool alive(std::int32_t triangle) const { return corners_[at(4 * triangle)].vertex != kNone; }
@@ -132,7 +137,7 @@ class PlanMesh {
   // Of a vertex that went, until compact(): the one it was drawn into.
   std::int32_t drawn_into(std::int32_t gone) const { return vertices_[at(gone)].x; }
 
-  static constexpr std::int32_t kMostLine = (1 << 10) - 1;
+  static constexpr std::int32_t kMostStrayed = (1 << 9) - 1;
 
  private:
   friend class BlockJoiner;
@@ -148,8 +153,9 @@ class PlanMesh {
   };
 
   static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+  static constexpr std::int32_t kBreakLine = 1 << 9;
   static int line_shift(std::int32_t corner) { return 10 * (corner & 3); }
-  void set_line_here(std::int32_t corner, std::int32_t value);
+  void set_line_here(std::int32_t corner, const LineEdgeState&);
   void join(std::int32_t a, std::int32_t b);
   void remove_triangle(std::int32_t apex);
   // Returns whose twins the vertices are that it appends.

@@ -200,7 +200,7 @@ std::vector<std::int32_t> coarser(const std::vector<std::int32_t>& before, const
 void check_factors(std::span<const double> factors, const SimplifyOptions& options) {
   bool ascend = !factors.empty() && factors[0] == 1;
   for (std::size_t n = 1; n < factors.size(); ++n) {
-    ascend = ascend && std::isfinite(factors[n]) && factors[n] > factors[n - 1];
+    ascend = ascend && std::isfinite(factors[n] * options.tolerance_m) && factors[n] > factors[n - 1];
   }
   if (!ascend) throw InvalidInput("Tolerances of a hierarchy have to grow from one to the next.");
   if (factors.size() > 1 && (options.target_faces > 0 || options.target_bytes.most > 0))

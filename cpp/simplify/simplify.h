@@ -4,8 +4,8 @@
 // At every place of the original's footprint, inside triangles as well as at samples,
 //   |height of the simplified TIN - height of the original| <= tolerance there,
 // where the original is the regular TIN of a DEM (dem.h) and the tolerance is a constant or linear on each of
-// its triangles. The footprint stays, holes and islands of nodata too; no triangle is turned over, folded or
-// without area. A tolerance of 0 removes only what is coplanar. All this of coordinates as written, which are
+// its triangles. The footprint stays, holes and islands of nodata too (but for what a border tolerance lets
+// go); no triangle is turned over, folded or without area. A tolerance of 0 removes only what is coplanar. All this of coordinates as written, which are
 // doubles (place_rounding.h). The same bytes for any number of threads.
 // Method, and what is certified: docs/algorithms/simplify.md.
 #pragma once

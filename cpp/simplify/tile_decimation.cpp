@@ -160,11 +160,12 @@ bool TileDecimation::try_collapse_of(std::int32_t corner, bool next_stays) {
     if (!edge) return false;
   }
   const QuadricSum quadric = quadrics(star_.a, star_.b);
-  const auto place = find_place(envelope_, star_, quadric, freedom(star_.a, star_.right < 0));
+  const auto place =
+      find_place(envelope_, star_, quadric, freedom(star_.a, star_.right < 0), edge && edge->advances);
   if (!place) return false;
   const std::int32_t a = star_.a;
   collapse(*place, quadric);
-  if (edge) mesh_.set_line(PlanMesh::previous(mesh_.edge(a, edge->to)), edge->line);
+  if (edge) mesh_.set_line(PlanMesh::previous(mesh_.edge(a, edge->to)), edge->state);
   return true;
 }
 
@@ -183,7 +184,7 @@ void TileDecimation::index_outline(std::int32_t v) {
 void TileDecimation::collapse(const Point& to, const QuadricSum& quadric) {
   const std::int32_t a = star_.a;
   if (!stays(a)) mesh_.move(a, to);
-  index_outline(a);
+  if (mesh_.kind(a) == VertexKind::kOutline) index_outline(a);  // others stay in their places
   mesh_.collapse(star_.corner, a);
   faces_gone_ += star_.right < 0 ? 1 : 2;
   ++collapses_;

@@ -24,10 +24,14 @@ constexpr VertexKind kEndOfLine = VertexKind::kCorner;
 VertexKind kind_of(const PlanMesh& mesh, std::int32_t v, const KindRules& rules) {
   const std::int32_t first = mesh.first_corner(v);
   const bool outline = mesh.on_outline(first);
-  int lines = 0;  // edges, those of the outline excepted
+  int lines = 0, strayed = 0;  // edges
+  const auto look_at = [&](std::int32_t across) {
+    lines += mesh.line(across).break_line ? 1 : 0;
+    strayed += mesh.line(across).strayed > 0 ? 1 : 0;
+  };
   std::int32_t last = first, corner = first;
   do {
-    if (!(outline && corner == first)) lines += mesh.line(PlanMesh::previous(corner)) != 0 ? 1 : 0;
+    look_at(PlanMesh::previous(corner));
     last = corner;
     corner = mesh.counterclockwise(corner);
   } while (corner != PlanMesh::kNone && corner != first);
@@ -35,12 +39,16 @@ VertexKind kind_of(const PlanMesh& mesh, std::int32_t v, const KindRules& rules)
     if (lines == 0) return VertexKind::kInside;
     return lines == 2 ? VertexKind::kOnLine : kEndOfLine;
   }
+  look_at(PlanMesh::next(last));
   if (rules.keep_border) return VertexKind::kFixed;
-  if (lines > 0) return kEndOfLine;
+  // A break line may run along the outline; where it leaves it or bends with it, it stays.
+  const bool along = lines == 2 && mesh.line(PlanMesh::previous(first)).break_line &&
+                     mesh.line(PlanMesh::next(last)).break_line;
+  if (lines > 0 && !along) return kEndOfLine;
   const std::int32_t a = mesh.vertex(PlanMesh::next(first)), b = mesh.vertex(PlanMesh::previous(last));
-  if (is_straight(mesh, v, a, b)) return VertexKind::kOutline;
-  return rules.border_moves && !is_corner_of_raster(mesh, v, rules) ? VertexKind::kOnLine
-                                                                    : VertexKind::kCorner;
+  if (strayed == 0 && is_straight(mesh, v, a, b)) return VertexKind::kOutline;
+  const bool may_leave = rules.border_moves && lines == 0 && !is_corner_of_raster(mesh, v, rules);
+  return may_leave ? VertexKind::kOnLine : VertexKind::kCorner;
 }
 
 }  // namespace sightbound

@@ -82,7 +82,8 @@ class DemToTin(TinMaker):
             return tr("TARGET_SIZE: TARGET_TRIANGLES says the same thing; give only one of them.")
         if given(parameters, "BREAK_LINE_TOLERANCE") and not given(parameters, "BREAK_LINES"):
             return tr("BREAK_LINE_TOLERANCE: give the BREAK_LINES too.")
-        if given(parameters, "BORDER_TOLERANCE") and self.parameterAsBoolean(parameters, "KEEP_BORDER", context):
+        moves = given(parameters, "BORDER_TOLERANCE") and number_or_none(self, parameters, "BORDER_TOLERANCE", context)
+        if moves and self.parameterAsBoolean(parameters, "KEEP_BORDER", context):
             return tr("BORDER_TOLERANCE: KEEP_BORDER keeps the outline where it is; give only one of them.")
         if given(parameters, "FOCUS") != given(parameters, "FOCUS_GROWTH"):
             return tr("FOCUS_GROWTH: give it together with FOCUS, or none of the two.")

@@ -168,6 +168,11 @@ def test_a_break_line_off_the_terrain_is_told_of():
     assert any("break lines have no terrain" in warning for warning in tin.report["warnings"])
 
 
+def test_a_break_line_beside_the_dem_is_told_of(dem):
+    tin = sb.dem_to_tin(dem, tolerance=5, break_lines=[[(0, 0), (100, 0)], [(WEST, NORTH), (WEST + 200, NORTH - 200)]])
+    assert any("1 of 2 break lines do not cross" in warning for warning in tin.report["warnings"])
+
+
 def test_outlines_move_within_their_tolerance():
     y, x = np.mgrid[:60, :60]
     coast = hills(60, 60)
@@ -205,6 +210,8 @@ def test_tolerances_of_a_hierarchy_grow(dem):
     for factors in ([], [2, 3], [1, 1], [1, "x"]):
         with pytest.raises(ValueError, match="factors"):
             sb.dem_to_tins(dem, tolerance=1, factors=factors)
+    with pytest.raises(ValueError, match="factors go with"):
+        sb.dem_to_tins(dem, tolerance=1, confidences=[0.5])
     with pytest.raises(ValueError, match="confidences"):
         sb.dem_to_tins(dem, error_model=sb.ErrorModel(vertical_rmse=1), confidences=[0.9, 0.5])
 
@@ -264,6 +271,8 @@ def test_it_can_be_cancelled(dem):
     ({"tolerance": 1.0, "break_lines": [[(0, 0), (np.nan, 1)]]}, "break_lines: line 1"),
     ({"tolerance": 1.0, "break_lines": [[(0, 0), (1, 1)], [1, 2]]}, "break_lines: line 2 has shape"),
     ({"tolerance": 1.0, "break_lines": ["x"]}, "break_lines: line 1"),
+    ({"tolerance": 1.0, "break_lines": [[(0, 0)]]}, "break_lines: line 1 has shape"),
+    ({"tolerance": 1.0, "break_lines": 5}, "break_lines is 5"),
     ({"error_model": sb.ErrorModel(1, 0, 0), "confidence": 1.0}, "confidence"),
 ])
 def test_wrong_arguments_are_named(dem, arguments, message):

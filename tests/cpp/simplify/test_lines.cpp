@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -249,6 +250,91 @@ TEST(Lines, S3OutlinesMoveByTheirToleranceAtMost) {
     }
   }
   EXPECT_LT(10 * moved, 7 * still);
+}
+
+// Coarse heights, so that much is coplanar or just at the tolerance; coasts with bays, samples that stay,
+// blocks.
+TEST(Lines, S1AndS2HoldWhereOutlinesMove) {
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto pick = [&](int n, int what) { return static_cast<int>(n * noise(what, 0, seed)); };
+    const int rows = 4 + pick(14, 1), cols = 4 + pick(18, 2), steepness = 1 + pick(30, 3);
+    const double holes = 0.05 + 0.1 * pick(4, 5);
+    const Grid<float> heights = grid_from(rows, cols, [&](int r, int c) {
+      if (noise(r / 2, c / 2, seed + 1) < holes || noise(r, c, seed + 5) < 0.03)
+        return static_cast<double>(kNan);
+      return std::floor(steepness * noise(r, c, seed + 2)) + (noise(r, c, seed + 3) < 0.03 ? 50 : 0);
+    });
+    const DemTerrain terrain = terrain_of(heights);
+    SimplifyOptions options = within(pick(4, 6) * 0.3 * steepness);
+    options.border_tolerance_m = 5.0 * (1 + pick(20, 7));
+    options.block = pick(2, 8) == 0 ? 256 : 1 + pick(7, 9);
+    options.samples_at_once = 1;
+    if (pick(2, 10) == 1) {
+      options.keep = Grid<std::uint8_t>(rows, cols, 0);
+      for (std::uint8_t& keep : options.keep.values())
+        keep = noise(static_cast<int>(&keep - options.keep.data()), 3, seed) < 0.06 ? 1 : 0;
+    }
+    if (pick(2, 11) == 1) {
+      options.break_lines =
+          line_chains(std::vector<std::vector<Xy>>{some_line(rows, cols, seed)}, rows, cols);
+      options.break_line_tolerance_m = 10.0 * pick(2, 12);
+    }
+    try {
+      const SimplifiedTin made = simplified(terrain, options);
+      const OverlayReport seen = overlay_report(
+          heights, terrain.geotransform, [&](int, int) { return options.tolerance_m; }, made.tin);
+      EXPECT_LE(seen.excess, kNoHeight);
+      EXPECT_GE(made.report.largest_deviation_m, seen.deviation - kNoHeight);
+      EXPECT_LT(seen.overlap, kNoArea);
+      EXPECT_EQ(seen.not_up, 0U);
+      EXPECT_EQ(seen.non_manifold, 0U);
+      SimplifyOptions all = within(0);
+      all.keep = Grid<std::uint8_t>(rows, cols, 1);
+      const SimplifiedTin full = simplified(terrain, all);
+      const std::vector<Segment> now = edges_of(terrain, made.tin, true),
+                                 given = edges_of(terrain, full.tin, true);
+      expect_near(given, now, options.border_tolerance_m / 10);
+      expect_near(now, given, options.border_tolerance_m / 10);
+      EXPECT_EQ(seen.holes, overlay_report(
+                                heights, terrain.geotransform, [](int, int) { return 0.0; }, full.tin)
+                                .holes);
+    } catch (const InvalidInput& error) {
+      EXPECT_TRUE(says(error.what(), "no surface"));
+    }
+  }
+}
+
+TEST(Lines, ChainsOnCornersOfCellsHaveNoGaps) {
+  for (const auto& [from, to] : {std::pair{Xy{1.5, 9.5}, Xy{56.5, 9.5}},
+                                 {Xy{0.5, 0.5}, Xy{30.5, 30.5}},
+                                 {Xy{30.5, 1.5}, Xy{2.5, 29.5}},
+                                 {Xy{7.5, 33.5}, Xy{7.5, 0.5}}}) {
+    const std::vector<LineEdge> edges = line_chains(std::vector<std::vector<Xy>>{{from, to}}, 40, 70);
+    std::map<Place, int> ends;
+    for (const Segment& s : segments_of(edges)) ++ends[s.first], ++ends[s.second];
+    EXPECT_EQ(std::count_if(ends.begin(), ends.end(), [](const auto& end) { return end.second == 1; }), 2);
+    EXPECT_EQ(edges.size(), ends.size() - 1);
+  }
+}
+
+TEST(Lines, BreakLinesAlongTheOutlineStay) {
+  const Grid<float> heights = grid_from(20, 30, [](int r, int c) { return r + c < 12 ? kNan : 5.0f; });
+  const DemTerrain terrain = terrain_of(heights);
+  SimplifyOptions options = within(1);
+  options.border_tolerance_m = 25;
+  // Along the northern border, and down the stairs of the coast.
+  options.break_lines =
+      line_chains(std::vector<std::vector<Xy>>{{{15, 0}, {22, 0}}, {{11, 2}, {2, 11}}}, 20, 30);
+  const SimplifiedTin made = simplified(terrain, options);
+  const std::vector<Segment> now = edges_of(terrain, made.tin, false);
+  for (const Place& end : {Place{15, 0}, Place{22, 0}}) EXPECT_TRUE(is_sample_of(end, now));
+  for (const Segment& s : segments_of(options.break_lines)) {
+    if (std::isnan(heights.at(static_cast<int>(s.first.second), static_cast<int>(s.first.first)))) continue;
+    if (std::isnan(heights.at(static_cast<int>(s.second.second), static_cast<int>(s.second.first)))) continue;
+    EXPECT_LT(distance({(s.first.first + s.second.first) / 2, (s.first.second + s.second.second) / 2}, now),
+              kRounding);
+  }
 }
 
 TEST(Lines, SayWhatIsWrong) {
