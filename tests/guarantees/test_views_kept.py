@@ -86,6 +86,7 @@ ERRORS = np.float32(np.exp(np.random.default_rng(5).normal(0.0, 1.0, (20, 22))) 
 CASES = [
     Case("fractal", terrains.fractal((20, 22), 3), TWO, 0.2, 6.0, 1.0),
     Case("tall targets", terrains.fractal((20, 24), 12, relief=80.0), TWO, 0.3, 8.0, 4.0),
+    Case("targets taller than the tolerance", terrains.fractal((20, 24), 12, relief=160.0), [(121.7, -118.2)], 0.1, 8.0, 8.0),
     Case("rough", terrains.fractal((20, 22), 4, relief=200.0, roughness=1.2), TWO, 0.3, 4.0),
     Case("errors differ", terrains.fractal((20, 22), 21, relief=120.0), [(104.0, -97.0)], ERRORS, 3.0),
     Case("walls", terrains.ridges((20, 20), height=30.0) + terrains.noise((20, 20), 6, relief=6.0), [(94.0, -107.0)], 0.3, 4.0),

@@ -89,6 +89,16 @@ def test_views_of_observers_stay(run, dem, tmp_path):
         simplify(run, dem, tmp_path, TOLERANCE=8.0, **{**views, "OBSERVERS": away})
 
 
+def test_degrees_are_refused_before_views_are_asked_for(run, tmp_path):
+    path = tmp_path / "degrees.tif"
+    scenes.write_raster(path, scenes.hills(), (11.0, 0.001, 0.0, 47.0, 0.0, -0.001), 4326)
+    points = str(scenes.write_points(tmp_path / "eye.gpkg", [(11.0105, 46.9895, {})], {}, crs=4326))
+    log = scenes.Log()
+    with pytest.raises(QgsProcessingException, match="degrees"):
+        simplify(run, str(path), tmp_path, TOLERANCE=8.0, OBSERVERS=points, VERTICAL_ACCURACY=0.3, feedback=log)
+    assert log.infos == log.warnings == log.fractions == []
+
+
 def test_tiles_and_targets(run, dem, tmp_path):
     kept = simplify(run, dem, tmp_path, TOLERANCE=20.0, KEEP_BORDER=True)
     assert kept["TRIANGLES"] >= 2 * (39 + 29) - 2 > simplify(run, dem, tmp_path, TOLERANCE=20.0)["TRIANGLES"]
