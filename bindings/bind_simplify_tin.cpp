@@ -39,6 +39,12 @@ void bind_simplify_tin(py::module_& m) {
   py::class_<SimplifyTinJob>(m, "SimplifyTinJob")
       .def(py::init<>())
       .def_readwrite("tolerance", &SimplifyTinJob::tolerance_m)
+      .def(
+          "set_tolerances",
+          [](SimplifyTinJob& self, const FloatArray& values) {
+            self.tolerances_m.assign(values.data(), values.data() + values.size());
+          },
+          py::arg("values").noconvert())
       .def_readwrite("model", &SimplifyTinJob::model)
       .def_readwrite("confidence", &SimplifyTinJob::confidence)
       .def_readwrite("border_tolerance", &SimplifyTinJob::border_tolerance_m)

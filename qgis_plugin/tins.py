@@ -6,11 +6,9 @@ from pathlib import Path
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
-    QgsCoordinateTransform,
-    QgsCsException,
-    QgsGeometry,
     QgsMesh,
-    QgsPoint,
+    QgsMeshDatasetGroupMetadata,
+    QgsMeshDatasetIndex,
     QgsProcessing,
     QgsProcessingParameterFeatureSource,
     QgsProcessingUtils,
@@ -29,6 +27,7 @@ class MeshData:
     vertices: list
     faces: list
     crs: QgsCoordinateReferenceSystem
+    attributes: dict  # name -> a number for each vertex
 
 
 @dataclass
@@ -42,8 +41,8 @@ def tin_layer(name, label):
     return QgsProcessingParameterFeatureSource(name, label, kinds, None, True)
 
 
-def read_mesh(algorithm, parameters, name, context):
-    """Vertices and faces of a mesh layer, whatever its format; None if it was left empty."""
+def read_mesh(algorithm, parameters, name, context, attribute=""):
+    """Vertices and faces of a mesh layer, whatever its format, and one dataset of its vertices; None if it was left empty."""
     if not given(parameters, name):
         return None
     layer = algorithm.parameterAsMeshLayer(parameters, name, context)
@@ -55,7 +54,23 @@ def read_mesh(algorithm, parameters, name, context):
         raise bad_input(name, tr("the mesh has no faces."))
     corners = [mesh.vertex(index) for index in range(mesh.vertexCount())]
     faces = [mesh.face(index) for index in range(mesh.faceCount())]
-    return MeshData([(one.x(), one.y(), one.z()) for one in corners], faces, layer.crs())
+    attributes = {attribute: _dataset(layer, attribute, len(corners))} if attribute else {}
+    return MeshData([(one.x(), one.y(), one.z()) for one in corners], faces, layer.crs(), attributes)
+
+
+def _dataset(layer, name, vertices):
+    """The first dataset of that name; NaN where it has no value."""
+    there = [QgsMeshDatasetIndex(group, 0) for group in layer.datasetGroupsIndexes()]
+    on_vertices = [
+        index for index in there
+        if layer.datasetGroupMetadata(index).dataType() == QgsMeshDatasetGroupMetadata.DataType.DataOnVertices
+    ]
+    names = {layer.datasetGroupMetadata(index).name(): index for index in reversed(on_vertices)}
+    if name not in names:
+        told = ", ".join(names) or tr("none")
+        raise bad_input("TOLERANCE_FIELD", tr("the mesh has no dataset {!r} on its vertices; it has: {}.").format(name, told))
+    block = layer.datasetValues(names[name], 0, vertices)
+    return [block.value(index).scalar() for index in range(vertices)]
 
 
 def open_mesh(sightbound, mesh, vertical_unit, feedback):
@@ -65,7 +80,13 @@ def open_mesh(sightbound, mesh, vertical_unit, feedback):
     if larger:
         feedback.pushInfo(tr("{} faces of four and more corners were cut into triangles.").format(larger))
     faces = [[*face, *[-1] * (width - len(face))] for face in mesh.faces]
-    return sightbound.Tin(mesh.vertices, faces, crs=_text(mesh.crs), vertical_unit=vertical_unit)
+    return sightbound.Tin(
+        mesh.vertices,
+        faces,
+        crs=_text(mesh.crs),
+        vertex_attributes=mesh.attributes,
+        vertical_unit=vertical_unit,
+    )
 
 
 def read_tin_layer(algorithm, parameters, name, context, feedback):
@@ -114,46 +135,6 @@ def read_tin_file(algorithm, parameters, name, context):
 def open_tin_file(sightbound, path, vertical_unit, feedback):
     """The core's Tin in a file. Any thread."""
     return sightbound.read_tin(path, vertical_unit=vertical_unit, progress=Progress(feedback, 0.0, 5.0))
-
-
-@dataclass
-class Areas:
-    together: QgsGeometry
-    crs: QgsCoordinateReferenceSystem
-    transforms: object  # the project's QgsCoordinateTransformContext
-
-
-def read_areas(algorithm, parameters, name, context, feedback):
-    """All polygons of a layer together; None if it was left empty."""
-    if not given(parameters, name):
-        return None
-    source = algorithm.parameterAsSource(parameters, name, context)
-    if source is None:
-        raise bad_input(name, tr("the layer {} cannot be read.").format(parameters[name]))
-    polygons = [feature.geometry() for feature in until_cancelled(source.getFeatures(), feedback)]
-    return Areas(QgsGeometry.unaryUnion(polygons), source.sourceCrs(), context.transformContext())
-
-
-def vertices_in(areas, tin, name, feedback):
-    """For each vertex 1 where it lies in an area, else 0; None without areas. Any thread."""
-    if areas is None:
-        return None
-    geometry = QgsGeometry(areas.together)
-    crs = QgsCoordinateReferenceSystem.fromWkt(tin.crs_wkt or "")
-    try:
-        geometry.transform(QgsCoordinateTransform(areas.crs, crs, areas.transforms))
-    except QgsCsException as error:
-        raise bad_input(name, tr("the areas cannot be brought into the CRS of the TIN.")) from error
-    engine = QgsGeometry.createGeometryEngine(geometry.constGet())
-    engine.prepareGeometry()
-    box = geometry.boundingBox()
-    inside = [
-        float(box.contains(x, y) and engine.intersects(QgsPoint(x, y)))
-        for x, y, _ in until_cancelled(tin.vertices.tolist(), feedback)
-    ]
-    if not any(inside):
-        raise bad_input(name, tr("no vertex lies in its polygons; check its CRS."))
-    return inside
 
 
 def _text(crs):

@@ -178,7 +178,7 @@ def dem_to_tins(
 def simplify(
     tin: Tin,
     *,
-    tolerance: float | None = None,
+    tolerance: float | npt.ArrayLike | None = None,
     error_model: ErrorModel | None = None,
     confidence: float = _DEFAULTS["confidence"],
     border_tolerance: float | None = None,
@@ -200,7 +200,8 @@ def simplify(
 
     Args:
         tin: what to simplify. Attributes are left out; where it is not manifold it stays as it is.
-        tolerance: metres, one for all places.
+        tolerance: metres, one for all places; or an array, one for each vertex, linear on each face (by distance: that of the
+            nearest place of the original).
         error_model: instead of a tolerance: the result stays in the error volume. Numbers only, as for ErrorVolume.build().
         confidence: of the error, between 0 and 1.
         border_tolerance: metres that the outline, also of holes, may move: in plan for height fields (not at all where a part would then
@@ -223,7 +224,7 @@ def simplify(
         raise ValueError("give either tolerance (metres) or error_model with vertical_rmse: how far the TIN may be from the original.")
     job = volume_core().SimplifyTinJob()
     if tolerance is not None:
-        job.tolerance = arguments.number("tolerance", tolerance)
+        _set_tolerance(job, tolerance)
     else:
         job.model = model_of_tin(error_model)
     job.confidence = arguments.number("confidence", confidence)
@@ -290,6 +291,16 @@ def _made(
         report["version"] = core.__version__
         tins.append(_wrapped(made, report, coarser))
     return tins
+
+
+def _set_tolerance(job: Any, given: Any) -> None:
+    if not quantities.is_array(given):
+        job.tolerance = arguments.number("tolerance", given)
+        return
+    values = arguments.float_array(given)
+    if values.ndim != 1:
+        raise ValueError(f"tolerance has shape {values.shape}; give one number, or an array with one for each vertex.")
+    job.set_tolerances(values)
 
 
 def _kept(given: Any, vertices: int) -> Any:

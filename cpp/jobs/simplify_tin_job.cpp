@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "jobs/simplify_tin_job.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "base/error.h"
 #include "base/memory_budget.h"
 #include "base/number_text.h"
+#include "jobs/tin_tolerance.h"
 #include "simplify/both_ways.h"
 #include "simplify/height_containment.h"
 #include "simplify/simplify_tin.h"
@@ -21,51 +20,30 @@ namespace sightbound {
 
 namespace {
 
-constexpr double kAnyConfidence = 0.95;  // stands for a tolerance: any would do
-
 // Of the voxel that just fits into the volume. A surface has the tolerance less about a voxel to move in.
 constexpr double kVoxelShare = 0.5;
 
-double confidence_of(const SimplifyTinJob& job) { return job.tolerance_m ? kAnyConfidence : job.confidence; }
+// metres; a voxel has 1 mm at least.
+constexpr double kLeastInVoxels = 0.002;
 
-// Metres that one sigma stands for in the tolerance.
-TinError error_of(const Tin& tin, const SimplifyTinJob& job, Metric metric) {
-  if (!job.tolerance_m) return resolve_tin_error(tin, job.model, metric);
-  const double tolerance = *job.tolerance_m;
-  if (!(tolerance >= 0 && tolerance <= kLargestError)) {
-    throw InvalidInput("tolerance is " + number_text(tolerance) + "; give metres, 0 to " +
-                       number_text(kLargestError) + ".");
-  }
-  const double sigma = tolerance / two_sided_quantile(kAnyConfidence);
-  TinError error;
-  error.sampling.assign(tin.vertices.size(), std::nextafter(static_cast<float>(sigma), 0.0F));
-  error.spacing_m = median_edge(tin);
-  return error;
-}
-
-void set_tolerances(const TinError& error, const SimplifyTinJob& job, SimplifyTinReport& report) {
-  const double z = two_sided_quantile(confidence_of(job));
-  double least = std::numeric_limits<double>::infinity(), largest = 0;
-  for (std::size_t v = 0; v < error.sampling.size(); ++v) {
-    const double sigma = static_cast<double>(error.sampling[v]);
-    const double between = error.amplitude.empty() ? 0 : static_cast<double>(error.amplitude[v]);
-    least = std::min(least, z * std::max(sigma, kLeastSigma));
-    largest = std::max(largest, z * std::max(sigma + between, kLeastSigma));
-  }
-  report.least_tolerance_m = job.tolerance_m.value_or(least);
-  report.largest_tolerance_m = job.tolerance_m.value_or(largest);
+void tell(const TinTolerance& tolerance, const SimplifyTinJob& job, SimplifyTinReport& report) {
+  const bool metres = job.tolerance_m || !job.tolerances_m.empty();
+  if (!metres) report.error_model = job.model.describe();
+  report.least_tolerance_m = tolerance.least;
+  report.largest_tolerance_m = tolerance.largest;
   if (job.border_tolerance_m) {
     report.border_tolerance_m = *job.border_tolerance_m;
   } else if (report.vertical) {
-    report.border_tolerance_m = job.tolerance_m ? 0 : z * job.model.horizontal_rmse;
+    report.border_tolerance_m =
+        metres ? 0 : two_sided_quantile(tolerance.confidence) * job.model.horizontal_rmse;
   } else {
-    report.border_tolerance_m = report.least_tolerance_m;
+    report.border_tolerance_m = tolerance.least;
   }
 }
 
-VolumeOptions volume_options(const Surface& surface, const SimplifyTinJob& job) {
+VolumeOptions volume_options(const Surface& surface, double confidence, const SimplifyTinJob& job) {
   VolumeOptions options;
-  options.confidence = options.largest_confidence = confidence_of(job);
+  options.confidence = options.largest_confidence = confidence;
   options.voxel_m = job.voxel_m;
   options.threads = job.threads;
   options.memory_bytes = job.memory_budget;
@@ -73,21 +51,10 @@ VolumeOptions volume_options(const Surface& surface, const SimplifyTinJob& job) 
   return options;
 }
 
-// metres at each vertex, at most.
-std::vector<float> tolerances_of(const TinError& error, const SimplifyTinJob& job) {
-  const double z = two_sided_quantile(confidence_of(job));
-  std::vector<float> tolerance(error.sampling.size());
-  for (std::size_t v = 0; v < tolerance.size(); ++v) {
-    const double sigma = std::max(static_cast<double>(error.sampling[v]), kLeastSigma);
-    tolerance[v] = std::nextafter(static_cast<float>(job.tolerance_m ? *job.tolerance_m : z * sigma), 0.0F);
-  }
-  return tolerance;
-}
-
-GridContainment grid_of(const Tin& tin, TinError error, const SimplifyTinJob& job, SimplifyTinReport& report,
-                        Progress& progress) {
-  const auto surface = std::make_shared<TinSurface>(tin, std::move(error), Metric::kNormal);
-  const VolumeOptions options = volume_options(*surface, job);
+GridContainment grid_of(const Tin& tin, TinTolerance& tolerance, const SimplifyTinJob& job,
+                        SimplifyTinReport& report, Progress& progress) {
+  const auto surface = std::make_shared<TinSurface>(tin, std::move(tolerance.error), Metric::kNormal);
+  const VolumeOptions options = volume_options(*surface, tolerance.confidence, job);
   const std::size_t collapses = simplify_tin_memory(tin) + tin.faces.size() * BothWays::kBytesPerFace;
   MemoryBudget(job.memory_budget)
       .require(collapses + estimate_need(*surface, options).bytes,
@@ -107,12 +74,12 @@ GridContainment grid_of(const Tin& tin, TinError error, const SimplifyTinJob& jo
           tin.vertices.front() - surface->vertex(0)};
 }
 
-bool is_below_all_voxels(const SimplifyTinJob& job, SimplifyTinReport& report) {
-  const double least = two_sided_quantile(confidence_of(job)) * kLeastSigma;
-  if (!job.tolerance_m || *job.tolerance_m > least) return false;
-  if (*job.tolerance_m > 0) {
-    report.warnings.push_back("A tolerance of less than " + number_text(least, 2) +
-                              " m is taken for 0: only what is coplanar goes.");
+bool is_below_all_voxels(const TinTolerance& tolerance, SimplifyTinReport& report) {
+  if (tolerance.largest > kLeastInVoxels) return false;
+  if (tolerance.largest > 0) {
+    report.warnings.push_back("No voxel is small enough for a tolerance of " +
+                              number_text(tolerance.largest, 3) + " m (" + number_text(kLeastInVoxels, 2) +
+                              " m is the least): only what is coplanar goes.");
   }
   return true;
 }
@@ -136,25 +103,22 @@ TinSimplified simplify_height_field(const Tin& tin, const std::vector<float>& to
   return simplify_tin(tin, again, still, progress);
 }
 
-TinSimplified simplify(const Tin& tin, TinError error, const SimplifyTinJob& job,
+TinSimplified simplify(const Tin& tin, TinTolerance tolerance, const SimplifyTinJob& job,
                        const TinSimplifyOptions& options, SimplifyTinReport& report, Progress& progress) {
-  if (is_below_all_voxels(job, report)) {
-    NothingContained nothing;
-    progress.begin(1, 1);
-    TinSimplified made = simplify_tin(tin, nothing, options, progress);
-    if (report.vertical) made.largest_deviation_m = 0;
-    return made;
-  }
-  const std::vector<float> tolerance = tolerances_of(error, job);
   if (report.vertical) {
     MemoryBudget(job.memory_budget)
         .require(simplify_tin_memory(tin) + tin.faces.size() * HeightContainment::kBytesPerFace,
                  "Simplifying " + std::to_string(tin.faces.size()) + " faces", "Give a part of the TIN.");
-    return simplify_height_field(tin, tolerance, options, report, progress);
+    return simplify_height_field(tin, tolerance.metres, options, report, progress);
+  }
+  if (is_below_all_voxels(tolerance, report)) {
+    NothingContained nothing;
+    progress.begin(1, 1);
+    return simplify_tin(tin, nothing, options, progress);
   }
   progress.begin(0.5, 1);
-  GridContainment grid = grid_of(tin, std::move(error), job, report, progress);
-  BothWays both_ways(tin, tolerance, grid);
+  GridContainment grid = grid_of(tin, tolerance, job, report, progress);
+  BothWays both_ways(tin, tolerance.metres, grid);
   progress.begin(0.5, 1);
   return simplify_tin(tin, both_ways, options, progress);
 }
@@ -168,16 +132,15 @@ SimplifiedAnyTin run_simplify_tin(const Tin& tin, const SimplifyTinJob& job, Pro
   SimplifyTinReport& report = result.report;
   report.vertical = metric == Metric::kVertical;
   report.warnings = tin.notes;
-  if (!job.tolerance_m) report.error_model = job.model.describe();
-  TinError error = error_of(tin, job, metric);
-  set_tolerances(error, job, report);
+  TinTolerance tolerance = tolerance_of(tin, job, metric);
+  tell(tolerance, job, report);
 
   TinSimplifyOptions options;
   options.height_field = report.vertical;
   options.outline_tolerance_m = report.border_tolerance_m;
   options.keep = job.keep;
   options.target_faces = job.target_faces;
-  TinSimplified made = simplify(tin, std::move(error), job, options, report, progress);
+  TinSimplified made = simplify(tin, std::move(tolerance), job, options, report, progress);
   progress.finish();
   report.faces_before = made.faces_before;
   report.faces_after = made.tin.faces.size();

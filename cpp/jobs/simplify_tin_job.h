@@ -15,9 +15,11 @@
 namespace sightbound {
 
 struct SimplifyTinJob {
-  // How far the surface may go: so many metres, or to the end of the error volume of `model` at a confidence.
-  // Vertically for height fields, else by distance.
+  // How far the surface may go: so many metres, the same everywhere or a value at each vertex (linear on each
+  // face), or to the end of the error volume of `model` at a confidence. Vertically for height fields, else
+  // by distance.
   std::optional<double> tolerance_m;
+  std::vector<float> tolerances_m;  // instead
   ErrorModel model;
   double confidence = 0.95;
   // How far the outline may go: in plan for height fields, else in space. Empty: height fields with a

@@ -26,14 +26,15 @@ void erase_sorted(std::vector<std::int32_t>& list, std::int32_t value) {
 
 }  // namespace
 
-BothWays::BothWays(const Tin& original, const std::vector<float>& tolerance, Containment& forward)
-    : original_(original), forward_(forward), proved_(original.faces.size()), by_(original.faces.size()) {
-  tolerance_.reserve(original.faces.size());
+BothWays::BothWays(const Tin& original, std::vector<float> tolerance, Containment& forward)
+    : original_(original),
+      forward_(forward),
+      tolerance_(std::move(tolerance)),
+      proved_(original.faces.size()),
+      by_(original.faces.size()) {
   faces_.reserve(original.faces.size());
-  for (const Face& f : original.faces) {
-    tolerance_.push_back(std::min({tolerance[at(f[0])], tolerance[at(f[1])], tolerance[at(f[2])]}));
+  for (const Face& f : original.faces)
     faces_.push_back({original.vertices[at(f[0])], original.vertices[at(f[1])], original.vertices[at(f[2])]});
-  }
   for (std::size_t f = 0; f < proved_.size(); ++f) {
     proved_[f] = {static_cast<std::int32_t>(f)};
     by_[f] = {static_cast<std::int32_t>(f)};
@@ -65,12 +66,12 @@ void BothWays::candidates_for(std::int32_t original, const StarChange& change) {
   }
 }
 
-bool BothWays::covered(const Triangle& piece, double tolerance, int depth) {
+bool BothWays::covered(const Triangle& piece, const std::array<double, 3>& tolerance, int depth) {
   std::array<bool, 3> near{};
   for (const Near& candidate : candidates_) {
     bool all = true;
     for (std::size_t i = 0; i < 3; ++i) {
-      const bool is = norm(closest_on(candidate.at, piece[i]) - piece[i]) <= tolerance;
+      const bool is = norm(closest_on(candidate.at, piece[i]) - piece[i]) <= tolerance[i];
       near[i] = near[i] || is;
       all = all && is;
     }
@@ -79,20 +80,24 @@ bool BothWays::covered(const Triangle& piece, double tolerance, int depth) {
     return true;
   }
   if (depth == 0 || !(near[0] && near[1] && near[2])) return false;
-  const std::array<Xyz, 3> middle{0.5 * (piece[0] + piece[1]), 0.5 * (piece[1] + piece[2]),
-                                  0.5 * (piece[2] + piece[0])};
-  return covered({piece[0], middle[0], middle[2]}, tolerance, depth - 1) &&
-         covered({piece[1], middle[1], middle[0]}, tolerance, depth - 1) &&
-         covered({piece[2], middle[2], middle[1]}, tolerance, depth - 1) &&
-         covered({middle[0], middle[1], middle[2]}, tolerance, depth - 1);
+  const Triangle middle{0.5 * (piece[0] + piece[1]), 0.5 * (piece[1] + piece[2]),
+                        0.5 * (piece[2] + piece[0])};
+  const std::array<double, 3>& t = tolerance;
+  const std::array<double, 3> m{0.5 * (t[0] + t[1]), 0.5 * (t[1] + t[2]), 0.5 * (t[2] + t[0])};
+  return covered({piece[0], middle[0], middle[2]}, {t[0], m[0], m[2]}, depth - 1) &&
+         covered({piece[1], middle[1], middle[0]}, {t[1], m[1], m[0]}, depth - 1) &&
+         covered({piece[2], middle[2], middle[1]}, {t[2], m[2], m[1]}, depth - 1) &&
+         covered({middle[0], middle[1], middle[2]}, {m[0], m[1], m[2]}, depth - 1);
 }
 
 bool BothWays::is_covered(std::int32_t original) {
   used_.clear();
   const Face& f = original_.faces[at(original)];
-  const double tolerance = static_cast<double>(tolerance_[at(original)]) - kWrittenSlack;
+  const auto tolerance = [this](std::int32_t v) {
+    return static_cast<double>(tolerance_[at(v)]) - kWrittenSlack;
+  };
   return covered({original_.vertices[at(f[0])], original_.vertices[at(f[1])], original_.vertices[at(f[2])]},
-                 tolerance, kMostCuts);
+                 {tolerance(f[0]), tolerance(f[1]), tolerance(f[2])}, kMostCuts);
 }
 
 std::optional<Xyz> BothWays::place(const StarChange& change) {

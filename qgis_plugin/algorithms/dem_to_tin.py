@@ -32,7 +32,6 @@ class DemToTin(TinMaker):
         )
         faces = blocks.number("TARGET_TRIANGLES", tr("Stop at so many triangles"), None, 1, None, integer=True)
         size = blocks.number("TARGET_SIZE", tr("Stop at a file of so many megabytes"), None, 0.001)
-        growth = blocks.number("FOCUS_GROWTH", tr("Growth of the tolerance, metres for each kilometre"), None, 0.0)
         lines = places("BREAK_LINES", tr("Break lines: edges of the TIN"), QgsProcessing.SourceType.TypeVectorLine)
         stray = blocks.metres("BREAK_LINE_TOLERANCE", tr("How far edges may stray from break lines (m; empty: a cell)"))
         outline = blocks.metres("BORDER_TOLERANCE", tr("How far the outline may move in plan (m; empty: not at all)"))
@@ -44,9 +43,8 @@ class DemToTin(TinMaker):
                 blocks.confidence_parameter(),
             ]
             + blocks.error_block()
+            + self.focus_parameters()
             + [
-                blocks.advanced(places("FOCUS", tr("Area of focus: the tolerance grows with the distance from it"))),
-                blocks.advanced(growth),
                 blocks.advanced(places("KEEP", tr("Places to keep at full resolution"))),
                 blocks.advanced(lines),
                 blocks.advanced(stray),
@@ -85,11 +83,7 @@ class DemToTin(TinMaker):
         moves = given(parameters, "BORDER_TOLERANCE") and number_or_none(self, parameters, "BORDER_TOLERANCE", context)
         if moves and self.parameterAsBoolean(parameters, "KEEP_BORDER", context):
             return tr("BORDER_TOLERANCE: KEEP_BORDER keeps the outline where it is; give only one of them.")
-        if given(parameters, "FOCUS") != given(parameters, "FOCUS_GROWTH"):
-            return tr("FOCUS_GROWTH: give it together with FOCUS, or none of the two.")
-        if given(parameters, "FOCUS") and not given(parameters, "TOLERANCE"):
-            return tr("TOLERANCE: give the tolerance at the FOCUS itself, in metres.")
-        return self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
+        return self.bad_focus(parameters) or self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
 
     def read_input(self, parameters, context, feedback):
         self.dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
@@ -101,7 +95,6 @@ class DemToTin(TinMaker):
         self.keep, self.focus, self.break_lines = (
             read_places(self, parameters, name, context, feedback, self.dem) for name in ("KEEP", "FOCUS", "BREAK_LINES")
         )
-        self.growth = number_or_none(self, parameters, "FOCUS_GROWTH", context)
         self.observers = []
         if given(parameters, "OBSERVERS"):
             self.observers, _ = read_points(
@@ -134,7 +127,7 @@ class DemToTin(TinMaker):
 
     def _tolerance(self, sightbound, dem, parameters, context, feedback):
         if self.focus:
-            return self.tolerance + self.growth / 1000.0 * distances_from(self.focus, self.dem, "FOCUS")
+            return self.grown(distances_from(self.focus, self.dem, "FOCUS"), parameters, context)
         if not self.observers:
             return self.tolerance
         tolerance, report = sightbound.visibility_tolerance(

@@ -9,9 +9,11 @@ from qgis.core import (
     QgsProcessingUtils,
 )
 
+from .. import parameters as blocks
 from ..error_block import log_error_model
 from ..errors import core_errors
 from ..feedback import Progress
+from ..places_on_dem import places
 from ..styling import StyleOnLoad
 from ..text import tr
 from ..values import given
@@ -42,6 +44,24 @@ class TinMaker(SimplificationAlgorithm):
         for name, label, _ in self.NUMBERS:
             self.addOutput(QgsProcessingOutputNumber(name, tr(label)))
         self.addOutput(QgsProcessingOutputString("ERROR_MODEL_USED", tr("Error model used (JSON)")))
+
+    def focus_parameters(self):
+        """The tolerance grows with the distance from what matters."""
+        growth = blocks.number("FOCUS_GROWTH", tr("Growth of the tolerance, metres for each kilometre"), None, 0.0)
+        focus = places("FOCUS", tr("Area of focus: the tolerance grows with the distance from it"))
+        return [blocks.advanced(focus), blocks.advanced(growth)]
+
+    def bad_focus(self, parameters):
+        if given(parameters, "FOCUS") != given(parameters, "FOCUS_GROWTH"):
+            return tr("FOCUS_GROWTH: give it together with FOCUS, or none of the two.")
+        if given(parameters, "FOCUS") and not given(parameters, "TOLERANCE"):
+            return tr("TOLERANCE: give the tolerance at the FOCUS itself, in metres.")
+        return ""
+
+    def grown(self, distances, parameters, context):
+        """TOLERANCE, and what the distances from the FOCUS add."""
+        growth = self.parameterAsDouble(parameters, "FOCUS_GROWTH", context)
+        return self.parameterAsDouble(parameters, "TOLERANCE", context) + growth / 1000.0 * distances
 
     def told(self, report, feedback):
         """The numbers of a report, told in the log too."""

@@ -1,18 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Simplify TIN: few triangles inside the error volume of any TIN, overhangs and buildings too."""
 
-from qgis.core import QgsProcessing, QgsProcessingParameterFeatureSource, QgsProcessingParameterFile, QgsProcessingParameterMeshLayer
+from qgis.core import (
+    QgsProcessing,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFile,
+    QgsProcessingParameterMeshLayer,
+    QgsProcessingParameterString,
+)
 
 from .. import parameters as blocks
 from ..error_block import check_error_block, read_error_block
 from ..errors import core_errors
 from ..feedback import Progress
+from ..places_on_tin import distances_from, read_features, vertices_in
+from ..rasters import read_raster
 from ..text import tr
-from ..tins import open_mesh, open_tin, open_tin_file, read_areas, read_mesh, read_tin_file, read_tin_layer, tin_layer, vertices_in
+from ..tins import open_mesh, open_tin, open_tin_file, read_mesh, read_tin_file, read_tin_layer, tin_layer
 from ..values import given, number_or_none, word
+from ..vertex_tolerance import of_attribute, of_raster
 from .simplification_base import TinMaker
 
 SOURCES = ("INPUT", "TIN", "FILE")
+TOLERANCES = ("TOLERANCE", "TOLERANCE_RASTER", "TOLERANCE_FIELD")
 
 
 class SimplifyTin(TinMaker):
@@ -34,15 +44,19 @@ class SimplifyTin(TinMaker):
         keep = QgsProcessingParameterFeatureSource("KEEP", tr("Areas to keep at full resolution"), polygon, None, True)
         faces = blocks.number("TARGET_TRIANGLES", tr("Stop at so many triangles"), None, 1, None, integer=True)
         file = QgsProcessingParameterFile("FILE", tr("File of a TIN: PLY, OBJ, 2DM, LandXML, ..."), optional=True)
+        field = QgsProcessingParameterString("TOLERANCE_FIELD", tr("Tolerance as an attribute of the vertices"), None, False, True)
         for parameter in (
             [
                 QgsProcessingParameterMeshLayer("INPUT", tr("Mesh layer (or a layer or a file below)"), None, True),
                 tin_layer("TIN", tr("3D layer: polygons, or points and lines to triangulate")),
                 file,
                 blocks.metres("TOLERANCE", tr("Tolerance in metres (empty: the error below)")),
+                blocks.advanced(blocks.raster("TOLERANCE_RASTER", tr("Tolerance as a raster (metres)"), True)),
+                blocks.advanced(field),
                 blocks.confidence_parameter(),
             ]
             + blocks.error_block()
+            + self.focus_parameters()
             + [
                 blocks.advanced(blocks.metres("BORDER_TOLERANCE", tr("How far the outline may move (empty: chosen)"))),
                 blocks.advanced(keep),
@@ -58,30 +72,35 @@ class SimplifyTin(TinMaker):
     def contradiction(self, parameters, context):
         if sum(given(parameters, name) for name in SOURCES) != 1:
             return tr("INPUT: give a mesh here, or a layer as TIN, or a FILE; one of the three.")
+        said = [name for name in TOLERANCES if given(parameters, name)]
+        if len(said) > 1:
+            return tr("{}: {} says the same thing; give only one of them.").format(said[1], said[0])
         errors = [name for name in ("VERTICAL_ACCURACY", "ERROR_RASTER", "ERROR_MODEL") if given(parameters, name)]
-        if given(parameters, "TOLERANCE") == bool(errors):
+        if bool(said) == bool(errors):
             return tr("TOLERANCE: say how far the TIN may be from the original, here or as VERTICAL_ACCURACY; one of the two.")
-        return self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
+        return self.bad_focus(parameters) or self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
 
     def read_input(self, parameters, context, feedback):
         self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
-        self.mesh = read_mesh(self, parameters, "INPUT", context)
+        self.field = self.parameterAsString(parameters, "TOLERANCE_FIELD", context)
+        self.mesh = read_mesh(self, parameters, "INPUT", context, self.field)
         self.layer = read_tin_layer(self, parameters, "TIN", context, feedback)
         self.file = read_tin_file(self, parameters, "FILE", context)
         self.error = read_error_block(self, parameters, context, feedback, self.mesh or self.layer)
-        self.keep = read_areas(self, parameters, "KEEP", context, feedback)
+        self.raster = read_raster(self, parameters, "TOLERANCE_RASTER", context, feedback)
+        self.keep, self.focus = (read_features(self, parameters, name, context, feedback) for name in ("KEEP", "FOCUS"))
 
     def compute(self, sightbound, parameters, context, feedback):
         original = self._original(sightbound, feedback)
         faces = number_or_none(self, parameters, "TARGET_TRIANGLES", context)
-        tolerance = number_or_none(self, parameters, "TOLERANCE", context)
+        tolerance = self._tolerance(original, parameters, context, feedback)
         made = sightbound.simplify(
             original,
             tolerance=tolerance,
             error_model=self._model(sightbound) if tolerance is None else None,
             confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
             border_tolerance=number_or_none(self, parameters, "BORDER_TOLERANCE", context),
-            keep=vertices_in(self.keep, original, "KEEP", feedback),
+            keep=vertices_in(self.keep, original, feedback),
             target_faces=None if faces is None else int(faces),
             voxel_size=number_or_none(self, parameters, "VOXEL", context),
             threads=self.threads(parameters, context),
@@ -91,6 +110,16 @@ class SimplifyTin(TinMaker):
         feedback.pushInfo(tr("The tolerance is measured {}.").format(measured))
         results = self.told(made.report, feedback)
         return {**results, **self.write_outputs(made, parameters, context, feedback)}
+
+    def _tolerance(self, original, parameters, context, feedback):
+        """One number, or one for each vertex; None when the error says it."""
+        if self.raster:
+            return of_raster(self.raster, original)
+        if self.field:
+            return of_attribute(self.field, original)
+        if self.focus:
+            return self.grown(distances_from(self.focus, original, feedback), parameters, context)
+        return number_or_none(self, parameters, "TOLERANCE", context)
 
     def _model(self, sightbound):
         """What lies between the samples cannot be learnt from a TIN: nothing, unless it is said."""

@@ -111,6 +111,38 @@ def points():
     return np.column_stack([xy + [500000, 5000000], z])
 
 
+def growing(vertices, most):
+    along = vertices[:, 0] - vertices[:, 0].min()
+    return 0.1 + (most - 0.1) * along / along.max()
+
+
+def test_a_tolerance_that_varies_holds_at_every_place(body):
+    original = sb.Tin(*body)
+    tolerance = growing(original.vertices, 1.0)
+    made = sb.simplify(original, tolerance=tolerance)
+    assert made.report["least_tolerance"] == pytest.approx(0.1) and made.report["largest_tolerance"] == pytest.approx(1.0)
+    weights = np.array([(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)]) / 3
+    allowed = np.einsum("wk,fk->fw", weights, tolerance[original.faces]).ravel()
+    far = distances(places_on(original.vertices, original.faces, 3), made.vertices, made.faces)
+    assert (far <= allowed).all()
+    assert sb.verify(original, made, tolerance, resolution=0.02).within_tolerance
+    even = sb.simplify(original, tolerance=0.1)
+    assert len(made.faces) < len(even.faces)
+
+
+def test_a_tolerance_that_varies_over_a_height_field(points):
+    original = sb.Tin.from_points(points)
+    tolerance = growing(original.vertices, 4.0)
+    tolerance[np.linalg.norm(original.vertices[:, :2] - [500150, 5000150], axis=1) < 60] = 0
+    made = sb.simplify(original, tolerance=tolerance)
+    height = np.minimum(tolerance + 1e-4, tolerance.max()).astype("float32")
+    assert sb.verify(original, made, height).within_tolerance
+    there = {tuple(v) for v in made.vertices.tolist()}
+    exact = tolerance[original.faces].max(axis=1) == 0
+    assert all(tuple(v) in there for v in original.vertices[np.unique(original.faces[exact])].tolist())
+    assert len(made.faces) < 0.4 * len(original.faces)
+
+
 def test_any_height_field_uses_the_whole_tolerance(points):
     original = sb.Tin.from_points(points)
     made = sb.simplify(original, tolerance=1.5)
@@ -183,6 +215,10 @@ def test_quads_become_triangles():
     ({"tolerance": 1, "error_model": sb.ErrorModel(vertical_rmse=1, geologic_variation=0)}, "give either tolerance"),
     ({"tolerance": -1}, "tolerance is -1"),
     ({"tolerance": float("nan")}, "tolerance"),
+    ({"tolerance": [1.0, 2.0]}, "tolerance has 2 values"),
+    ({"tolerance": [[1.0, 2.0]]}, "tolerance has shape"),
+    ({"tolerance": "nan"}, "tolerance is nan at vertex 0"),
+    ({"tolerance": "negative"}, r"tolerance is -1 at vertex 7 \(1 such of \d+\); give metres"),
     ({"tolerance": 1, "border_tolerance": -2}, "border_tolerance is -2"),
     ({"tolerance": 1, "target_faces": 0}, "target_faces"),
     ({"tolerance": 1, "keep": [1, 0]}, "keep has shape"),
@@ -191,8 +227,12 @@ def test_quads_become_triangles():
     ({"error_model": sb.ErrorModel()}, "geologic_variation"),
 ])
 def test_what_is_wrong_is_named(wrong, message):
+    cave = sb.Tin(*tins.cave(np.random.default_rng(3)))
+    stand_ins = {"nan": np.full(len(cave.vertices), np.nan), "negative": np.ones(len(cave.vertices))}
+    stand_ins["negative"][7] = -1
+    wrong = {name: stand_ins.get(value, value) if isinstance(value, str) else value for name, value in wrong.items()}
     with pytest.raises(ValueError, match=message):
-        sb.simplify(sb.Tin(*tins.cave(np.random.default_rng(3))), **wrong)
+        sb.simplify(cave, **wrong)
 
 
 def test_too_much_for_the_memory_is_refused_with_advice():

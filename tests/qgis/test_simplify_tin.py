@@ -7,7 +7,7 @@ import math
 import numpy
 import pytest
 import scenes
-from osgeo import ogr
+from osgeo import gdal, ogr
 from qgis.core import (
     QgsMeshLayer,
     QgsProcessingContext,
@@ -65,6 +65,90 @@ def test_an_accuracy_is_a_tolerance_at_the_confidence(run, mesh, tmp_path):
     assert 0.39 < found["LARGEST_TOLERANCE"] <= 1.96 * 0.2 * math.sqrt(2) + 1e-3
     assert json.loads(found["ERROR_MODEL_USED"])["vertical_rmse"] == 0.2
     assert simplify(run, mesh, tmp_path, CONFIDENCE=0.999, **error)["TRIANGLES"] < found["TRIANGLES"]
+
+
+def east_and_west(folder, crs=scenes.UTM, nodata=None):
+    """0.1 m west of the tunnel's middle, 0.8 m east of it, in cells of 1 m."""
+    values = numpy.where(numpy.arange(60) < 20, 0.1, 0.8).astype("float32") * numpy.ones((60, 1), "float32")
+    if nodata is not None:
+        values[values > 0.5] = nodata
+    place = (scenes.WEST, 1.0, 0.0, scenes.NORTH - 10, 0.0, -1.0)
+    return str(scenes.write_raster(folder / "tolerance.tif", values, place, crs, nodata))
+
+
+def test_a_raster_of_tolerances(run, mesh, tmp_path):
+    found = simplify(run, mesh, tmp_path, TOLERANCE=None, TOLERANCE_RASTER=east_and_west(tmp_path))
+    assert found["LARGEST_TOLERANCE"] == pytest.approx(0.8)
+    west, east = (
+        sum((x < scenes.WEST + 20) == side for x, *_ in vertices(found["OUTPUT"])) for side in (True, False)
+    )
+    assert west > 1.3 * east
+    # The same in another CRS, cells turned by the convergence of meridians.
+    warped = str(tmp_path / "other.tif")
+    gdal.Warp(warped, east_and_west(tmp_path), dstSRS="EPSG:3035", xRes=0.5, yRes=0.5, dstNodata=-1)
+    other = simplify(run, mesh, tmp_path, TOLERANCE=None, TOLERANCE_RASTER=warped)
+    assert abs(other["TRIANGLES"] - found["TRIANGLES"]) < 0.15 * found["TRIANGLES"]
+
+
+def vertices(path):
+    import sightbound
+
+    return sightbound.read_tin(path).vertices.tolist()
+
+
+@pytest.mark.parametrize("wrong, message", [
+    ({"crs": 32634}, "TOLERANCE_RASTER: it does not lie under"),
+    ({"nodata": -9.0}, r"TOLERANCE_RASTER: it has no value at \d+ of"),
+])
+def test_a_raster_that_does_not_hold_all_is_refused(run, mesh, tmp_path, wrong, message):
+    with pytest.raises(QgsProcessingException, match=message):
+        simplify(run, mesh, tmp_path, TOLERANCE=None, TOLERANCE_RASTER=east_and_west(tmp_path, **wrong))
+
+
+def test_an_attribute_of_the_vertices_is_a_tolerance(run, mesh, tmp_path):
+    import sightbound
+
+    tin = sightbound.read_tin(mesh)
+    there = tin.vertices
+    tolerance = numpy.where(there[:, 0] < scenes.WEST + 20, 0.1, 0.8)
+    path, points = str(tmp_path / "told.ply"), str(tmp_path / "told.gpkg")
+    sightbound.Tin(there, tin.faces, tin.crs_wkt, vertex_attributes={"reach": tolerance}).write(path)
+    by_mesh = simplify(run, path, tmp_path, TOLERANCE=None, TOLERANCE_FIELD="reach")
+    by_file = simplify(run, None, tmp_path, FILE=path, TOLERANCE=None, TOLERANCE_FIELD="reach")
+    assert by_mesh["LARGEST_TOLERANCE"] == pytest.approx(0.8) and by_file["TRIANGLES"] == by_mesh["TRIANGLES"]
+    rows = [(x, y, z + 5 * math.sin(x / 2), 0.1 + 0.1 * n) for n, (x, y, z) in enumerate(ground())]
+    write_points_with_heights(points, rows)
+    by_points = simplify(run, None, tmp_path, TIN=points, TOLERANCE=None, TOLERANCE_FIELD="reach")
+    assert by_points["LARGEST_TOLERANCE"] == pytest.approx(0.1 + 0.1 * 99)
+    for source in ({"INPUT": path}, {"INPUT": None, "FILE": path}):
+        with pytest.raises(QgsProcessingException, match="TOLERANCE_FIELD: the .* 'height'"):
+            simplify(run, None, tmp_path, TOLERANCE=None, TOLERANCE_FIELD="height", **source)
+
+
+def ground():
+    return [(scenes.WEST + 3.0 * c, scenes.NORTH - 3.0 * r, 100.0) for r in range(10) for c in range(10)]
+
+
+def write_points_with_heights(path, rows):
+    source = ogr.GetDriverByName("GPKG").CreateDataSource(path)
+    layer = source.CreateLayer("points", scenes.reference(scenes.UTM), ogr.wkbPoint25D)
+    layer.CreateField(ogr.FieldDefn("reach", ogr.OFTReal))
+    for x, y, z, reach in rows:
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POINT Z ({x} {y} {z})"))
+        feature.SetField("reach", reach)
+        layer.CreateFeature(feature)
+    source = None
+
+
+def test_the_tolerance_grows_with_the_distance_from_the_focus(run, mesh, tmp_path):
+    focus = square(tmp_path / "focus.gpkg", scenes.WEST + 5, scenes.NORTH - 65, 30)
+    fine = simplify(run, mesh, tmp_path, TOLERANCE=0.1)["TRIANGLES"]
+    found = simplify(run, mesh, tmp_path, TOLERANCE=0.1, FOCUS=focus, FOCUS_GROWTH=30.0)
+    assert found["TRIANGLES"] < 0.9 * fine and 0.1 < found["LARGEST_TOLERANCE"] < 0.1 + 0.03 * 40
+    far = square(tmp_path / "far.gpkg", scenes.WEST + 9000, scenes.NORTH, 10)
+    with pytest.raises(QgsProcessingException, match="FOCUS: no feature lies on the TIN"):
+        simplify(run, mesh, tmp_path, FOCUS=far, FOCUS_GROWTH=30.0)
 
 
 def test_layers_and_files_are_taken_too(run, mesh, tmp_path):
@@ -139,11 +223,13 @@ def test_the_mesh_is_loaded_with_its_edges(provider, mesh, tmp_path, log):
     ({"VERTICAL_ACCURACY": 1.0}, "TOLERANCE: say how far"),
     ({"TOLERANCE": None, "VERTICAL_ACCURACY": 1.0, "CONFIDENCE": 1.0}, "CONFIDENCE"),
     ({"TOLERANCE": None, "VERTICAL_ACCURACY": 1.0, "GEOLOGIC_RASTER": "dem"}, "GEOLOGIC_VARIATION|GEOLOGIC_RASTER"),
+    ({"TOLERANCE_FIELD": "reach"}, "TOLERANCE_FIELD: TOLERANCE says the same"),
+    ({"FOCUS_GROWTH": 1.0}, "FOCUS_GROWTH: give it together"),
     ({"INPUT": None}, "INPUT: give a mesh"),
     ({"FILE": "missing.ply"}, "INPUT: give a mesh"),
     ({"INPUT": None, "FILE": "/nowhere.ply"}, "FILE: there is no file"),
     ({"INPUT": "dem"}, "INPUT"),
-    ({"KEEP": "far"}, "KEEP: no vertex lies"),
+    ({"KEEP": "far"}, "KEEP: no feature lies on the TIN"),
     ({"VOXEL": 0.002}, "VOXEL"),
     ({"OUTPUT": "/nowhere/tin.ply"}, "OUTPUT"),
     ({"OUTPUT": "tin.xyz"}, "OUTPUT"),

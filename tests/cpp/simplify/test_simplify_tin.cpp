@@ -62,11 +62,12 @@ Tin shaken(Tin tin, unsigned seed, double size) {
 
 enum class Ways { kForward, kBoth };
 
-// Distance to the original at most `tolerance`, voxels of that size.
-TinSimplified simplified(const Tin& tin, double tolerance, double voxel,
+// Distance to the original at most the tolerance (at each vertex), voxels of that size.
+TinSimplified simplified(const Tin& tin, const std::vector<float>& tolerance, double voxel,
                          const TinSimplifyOptions& options = {}, int threads = 1, Ways ways = Ways::kBoth) {
   TinError error;
-  error.sampling.assign(tin.vertices.size(), std::nextafter(static_cast<float>(tolerance / kZ), 0.0F));
+  for (const float metres : tolerance)
+    error.sampling.push_back(std::nextafter(metres / static_cast<float>(kZ), 0.0F));
   error.spacing_m = 1;
   const auto surface = std::make_shared<TinSurface>(tin, error, Metric::kNormal);
   VolumeOptions volume;
@@ -76,9 +77,15 @@ TinSimplified simplified(const Tin& tin, double tolerance, double voxel,
   CoverMasks covers = build_covers(surface, 0.95, volume, progress);
   GridContainment grid(PermissionGrid(covers.inner, covers.voxel_m, covers.voxel_height_m),
                        tin.vertices[0] - surface->vertex(0));
-  BothWays both_ways(tin, std::vector<float>(tin.vertices.size(), static_cast<float>(tolerance)), grid);
+  BothWays both_ways(tin, tolerance, grid);
   Containment& containment = ways == Ways::kBoth ? static_cast<Containment&>(both_ways) : grid;
   return simplify_tin(tin, containment, options, progress);
+}
+
+TinSimplified simplified(const Tin& tin, double tolerance, double voxel,
+                         const TinSimplifyOptions& options = {}, int threads = 1, Ways ways = Ways::kBoth) {
+  const std::vector<float> same(tin.vertices.size(), static_cast<float>(tolerance));
+  return simplified(tin, same, voxel, options, threads, ways);
 }
 
 TinSimplified with_nothing_allowed(const Tin& tin, const TinSimplifyOptions& options = {}) {
@@ -127,6 +134,56 @@ TEST(SimplifyTin, EveryPlaceIsWithinTheTolerance) {
     EXPECT_EQ(made.faces_before, body.tin.faces.size());
     EXPECT_LT(made.tin.faces.size(), body.tin.faces.size() / 4) << body.name;
     RecordProperty(body.name, static_cast<int>(made.tin.faces.size()));
+  }
+}
+
+// From 0.1 m at one end to so much more at the other.
+std::vector<float> growing(const Tin& tin, double most) {
+  const Box3 box = bounds_of(tin);
+  std::vector<float> tolerance;
+  for (const Xyz& v : tin.vertices)
+    tolerance.push_back(
+        static_cast<float>(0.1 + (most - 0.1) * (v.x - box.low.x) / (box.high.x - box.low.x)));
+  return tolerance;
+}
+
+TEST(SimplifyTin, AToleranceThatVariesHoldsAtEveryPlace) {
+  for (const Body& body : bodies()) {
+    const std::vector<float> tolerance = growing(body.tin, 2 * body.tolerance);
+    const Tin made = simplified(body.tin, tolerance, body.voxel / 2).tin;
+    EXPECT_LT(made.faces.size(), body.tin.faces.size() / 2) << body.name;
+    const auto of_place = [&](const Face& f, const Xyz& p) {  // linear on a face
+      const auto t = triangle_of(body.tin, f);
+      const Xyz normal = cross(t[1] - t[0], t[2] - t[0]);
+      double value = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Xyz &a = t[(i + 1) % 3], &b = t[(i + 2) % 3];
+        value +=
+            dot(cross(b - a, p - a), normal) / dot(normal, normal) * double(tolerance[std::size_t(f[i])]);
+      }
+      return value;
+    };
+    double most = 0;
+    for (const Face& f : body.tin.faces) {
+      for_places(triangle_of(body.tin, f), 3,
+                 [&](const Xyz& p) { most = std::max(most, distance_to_tin(made, p) - of_place(f, p)); });
+    }
+    EXPECT_LE(most, 1e-6) << body.name;
+    // Near enough to some place, judged by what is allowed there.
+    for (const Face& f : made.faces) {
+      for_places(triangle_of(made, f), 5, [&](const Xyz& p) {
+        double spare = -1;
+        for (const Face& g : body.tin.faces) {
+          const auto t = triangle_of(body.tin, g);
+          const double far = distance_to_triangle(t, p),
+                       allowed = double(std::max({tolerance[std::size_t(g[0])], tolerance[std::size_t(g[1])],
+                                                  tolerance[std::size_t(g[2])]}));
+          spare = std::max(spare, allowed - far);
+        }
+        most = std::max(most, -spare);
+      });
+    }
+    EXPECT_LE(most, 1e-6) << body.name;
   }
 }
 

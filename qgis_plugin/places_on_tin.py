@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Features over the vertices of a TIN, seen in plan: which of them they hold, and how far the others are from them."""
+
+from dataclasses import dataclass
+
+import numpy
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsGeometry,
+    QgsPoint,
+    QgsUnitTypes,
+)
+
+from .errors import bad_input
+from .feedback import until_cancelled
+from .text import tr
+from .values import given
+
+
+@dataclass
+class Features:
+    name: str  # of the parameter
+    together: QgsGeometry
+    crs: QgsCoordinateReferenceSystem
+    transforms: object  # the project's QgsCoordinateTransformContext
+
+
+def read_features(algorithm, parameters, name, context, feedback):
+    """All features of a layer together; None if it was left empty."""
+    if not given(parameters, name):
+        return None
+    source = algorithm.parameterAsSource(parameters, name, context)
+    if source is None:
+        raise bad_input(name, tr("the layer {} cannot be read.").format(parameters[name]))
+    shapes = [feature.geometry() for feature in until_cancelled(source.getFeatures(), feedback)]
+    together = QgsGeometry.unaryUnion([shape for shape in shapes if not shape.isEmpty()])
+    if together.isEmpty():
+        raise bad_input(name, tr("the layer has no features, or invalid ones (Fix geometries)."))
+    return Features(name, together, source.sourceCrs(), context.transformContext())
+
+
+def vertices_in(features, tin, feedback):
+    """For each vertex 1 where it lies in a feature, else 0; None without features. Any thread."""
+    if features is None:
+        return None
+    geometry = _over(features, tin)
+    engine, box = _prepared(geometry), geometry.boundingBox()
+    inside = [
+        float(box.contains(x, y) and engine.intersects(QgsPoint(x, y)))
+        for x, y, _ in until_cancelled(tin.vertices.tolist(), feedback)
+    ]
+    if not any(inside):
+        raise bad_input(features.name, tr("no vertex lies in its polygons; check its CRS."))
+    return inside
+
+
+def distances_from(features, tin, feedback):
+    """Metres in plan from each vertex to the nearest feature. Any thread."""
+    engine = _prepared(_over(features, tin))
+    units = [engine.distance(QgsPoint(x, y)) for x, y, _ in until_cancelled(tin.vertices.tolist(), feedback)]
+    crs = _crs_of(tin)
+    metres = QgsUnitTypes.fromUnitToUnitFactor(crs.mapUnits(), QgsUnitTypes.DistanceUnit.DistanceMeters)
+    return (metres if crs.isValid() else 1.0) * numpy.array(units)
+
+
+def _over(features, tin):
+    """The features in the TIN's CRS; one of them must lie on it."""
+    geometry = QgsGeometry(features.together)
+    try:
+        geometry.transform(QgsCoordinateTransform(features.crs, _crs_of(tin), features.transforms))
+    except QgsCsException as error:
+        raise bad_input(features.name, tr("the features cannot be brought into the CRS of the TIN.")) from error
+    (west, south, _), (east, north, _) = tin.vertices.min(axis=0), tin.vertices.max(axis=0)
+    box = geometry.boundingBox()
+    if box.xMaximum() < west or box.xMinimum() > east or box.yMaximum() < south or box.yMinimum() > north:
+        raise bad_input(features.name, tr("no feature lies on the TIN; check its CRS."))
+    return geometry
+
+
+def _prepared(geometry):
+    engine = QgsGeometry.createGeometryEngine(geometry.constGet())
+    engine.prepareGeometry()
+    return engine
+
+
+def _crs_of(tin):
+    return QgsCoordinateReferenceSystem.fromWkt(tin.crs_wkt or "")
