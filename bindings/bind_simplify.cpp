@@ -6,6 +6,7 @@
 #include "bindings.h"
 #include "numpy_views.h"
 #include "progress_bridge.h"
+#include "tin_targets.h"
 #include <pybind11/stl.h>
 
 #include "jobs/dem_to_tin_job.h"
@@ -46,9 +47,7 @@ void bind_options(py::module_& m) {
       .def_readwrite("border_tolerance", &DemToTinOptions::border_tolerance_m)
       .def("add_break_line", &add_break_line, py::arg("places").noconvert())
       .def_readwrite("break_line_tolerance", &DemToTinOptions::break_line_tolerance_m)
-      .def_readwrite("target_faces", &DemToTinOptions::target_faces)
-      .def_readwrite("target_bytes", &DemToTinOptions::target_bytes)
-      .def_readwrite("target_ending", &DemToTinOptions::target_ending)
+      .def("set_target", &set_target<DemToTinOptions>, py::arg("faces"), py::arg("bytes"), py::arg("ending"))
       .def_readwrite("threads", &DemToTinOptions::threads)
       .def_readwrite("memory_budget", &DemToTinOptions::memory_budget);
 }

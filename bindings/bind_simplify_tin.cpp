@@ -6,6 +6,7 @@
 #include "bindings.h"
 #include "numpy_views.h"
 #include "progress_bridge.h"
+#include "tin_targets.h"
 #include <pybind11/stl.h>
 
 #include "jobs/simplify_tin_job.h"
@@ -54,7 +55,7 @@ void bind_simplify_tin(py::module_& m) {
             self.keep.assign(values.data(), values.data() + values.size());
           },
           py::arg("values").noconvert())
-      .def_readwrite("target_faces", &SimplifyTinJob::target_faces)
+      .def("set_target", &set_target<SimplifyTinJob>, py::arg("faces"), py::arg("bytes"), py::arg("ending"))
       .def_readwrite("voxel", &SimplifyTinJob::voxel_m)
       .def_readwrite("threads", &SimplifyTinJob::threads)
       .def_readwrite("memory_budget", &SimplifyTinJob::memory_budget);

@@ -43,6 +43,7 @@ _PARAMETER_OF = {
     "voxel_size": "VOXEL",
     "border_tolerance": "BORDER_TOLERANCE",
     "target_faces": "TARGET_TRIANGLES",
+    "target_bytes": "TARGET_SIZE",
     "voxel_height": "VOXEL_HEIGHT",
     "voxel_height_m": "VOXEL_HEIGHT",
     "largest_confidence": "LARGEST_CONFIDENCE",

@@ -343,9 +343,6 @@ class DemToTinOptions:
     border_tolerance: float
     def add_break_line(self, places: _Doubles) -> None: ...
     break_line_tolerance: float | None
-    target_faces: int
-    target_bytes: float
-    target_ending: str
     threads: int
     memory_budget: int
     def __init__(self) -> None: ...

@@ -97,7 +97,7 @@ def dem_to_tin(
             to it, at most a cell away; ends and junctions stay vertices.
         break_line_tolerance: metres by which the edges may stray from these samples in plan; None for the longer side of a cell.
         target_faces: stop at that many faces (give or take one), the cheapest removed first; still within the tolerance, so that more
-            may be left. None to remove all that can be.
+            may be left: a warning tells. None to remove all that can be.
         target_bytes: instead: stop as soon as the file that `write` makes of the TIN takes no more bytes; a warning tells when the
             tolerance does not let it.
         target_ending: of that file. Sizes are exact for "ply"; those of "nc", "gpkg", "2dm" and "obj" are estimated from above.
@@ -115,12 +115,7 @@ def dem_to_tin(
         dem, tolerance, error_model, extent, keep, keep_border, border_tolerance, break_lines, break_line_tolerance, threads, memory_budget
     )
     options.levels = [1.0] if error_model is None else [arguments.number("confidence", confidence)]
-    options.target_faces = 0 if target_faces is None else _count(target_faces)
-    if target_bytes is not None:
-        if target_faces is not None:
-            raise ValueError("target_bytes and target_faces say the same thing; give only one of them.")
-        options.target_bytes = _bytes(target_bytes)
-        options.target_ending = arguments.word("target_ending", target_ending).lower().lstrip(".")
+    _set_target(options, target_faces, target_bytes, target_ending)
     return _made(dem, tolerance, error_model, options, progress)[0]
 
 
@@ -184,6 +179,8 @@ def simplify(
     border_tolerance: float | None = None,
     keep: npt.ArrayLike | None = None,
     target_faces: int | None = None,
+    target_bytes: float | None = None,
+    target_ending: str = "ply",
     voxel_size: float | None = None,
     threads: int | None = None,
     memory_budget: float | None = None,
@@ -209,7 +206,10 @@ def simplify(
             stay or go, its corners (60 degrees and more) stay. None: for height fields 0, or z(confidence) times the model's
             horizontal error; for others the least tolerance.
         keep: array, one for each vertex: those that stay where above 0.
-        target_faces: stop at that many faces (give or take one), the cheapest removed first; None to remove all that can be.
+        target_faces: stop at that many faces (give or take one), the cheapest removed first; still within the tolerance, so that more
+            may be left: a warning tells. None to remove all that can be.
+        target_bytes: instead: stop as soon as the file that `write` makes of the TIN takes no more bytes.
+        target_ending: of that file, as for dem_to_tin().
         voxel_size: metres; smaller voxels keep more of the tolerance, and take more time and memory. None to choose it.
         threads: for the voxels; None for all cores. The collapses take one.
         memory_budget: bytes; None for three quarters of the memory.
@@ -232,7 +232,7 @@ def simplify(
         job.border_tolerance = arguments.number("border_tolerance", border_tolerance)
     if keep is not None:
         job.set_keep(_kept(keep, core_tin(tin).vertex_count))
-    job.target_faces = 0 if target_faces is None else _count(target_faces)
+    _set_target(job, target_faces, target_bytes, target_ending)
     job.voxel = optional_length("voxel_size", voxel_size)
     job.threads = arguments.threads(threads)
     job.memory_budget = arguments.memory_budget(memory_budget)
@@ -331,6 +331,16 @@ def _of_tolerance(message: str) -> str:
     """The core knows a tolerance as an error."""
     message = message.replace("Give the accuracy of the heights (vertical_rmse), or a tolerance.", "Give a larger tolerance there.")
     return message.replace("vertical_rmse", "tolerance").replace("The error raster", "The tolerance raster")
+
+
+def _set_target(options: Any, faces: Any, bytes_: Any, ending: Any) -> None:
+    if faces is not None and bytes_ is not None:
+        raise ValueError("target_bytes and target_faces say the same thing; give only one of them.")
+    options.set_target(
+        0 if faces is None else _count(faces),
+        0.0 if bytes_ is None else _bytes(bytes_),
+        arguments.word("target_ending", ending).lower().lstrip("."),
+    )
 
 
 def _count(faces: Any) -> int:

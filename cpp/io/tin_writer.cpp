@@ -61,14 +61,14 @@ std::vector<NamedValues> face_values(const Tin& tin, const std::vector<std::stri
   return named(values, taken);
 }
 
-TinFileSize tin_file_size(const std::string& ending, const std::string& crs_wkt) {
+TinFileSize tin_file_size(const std::string& ending, const std::string& crs_wkt, bool deviation) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();  // of vertices, of faces
   constexpr double kNumber = 25, kIndex = 11;                              // characters, with a blank
   if (ending == "ply") {
     Tin tin;
     tin.crs_wkt = crs_wkt;
-    tin.face_attributes.push_back({"deviation", {}});
-    return {static_cast<double>(ply_header(tin, kMost, kMost, false).size()), 24, 17};
+    if (deviation) tin.face_attributes.push_back({"deviation", {}});
+    return {static_cast<double>(ply_header(tin, kMost, kMost, false).size()), 24, deviation ? 17.0 : 13.0};
   }
   if (ending == "nc") return {20000, 24, 16};
   if (ending == "gpkg") return {150000, 0, 300};  // with its index: 270 measured

@@ -5,12 +5,10 @@
 #include <cmath>
 #include <span>
 
-#include "base/error.h"
 #include "base/number_text.h"
 #include "base/parallel.h"
 #include "io/crs.h"
 #include "io/tin_crs.h"
-#include "io/tin_writer.h"
 #include "jobs/resolve_error.h"
 #include "jobs/tolerance_windows.h"
 
@@ -75,26 +73,6 @@ void say_what_stays(DemToTin& result) {
       "heights (vertical_rmse), or a tolerance.");
 }
 
-// What is left for vertices and faces.
-SimplifyOptions::Bytes bytes_for(const DemToTinOptions& options, const DemSource& source) {
-  const TinFileSize size = tin_file_size(options.target_ending, horizontal_crs(source.crs_wkt()));
-  const double most = options.target_bytes - size.fixed;
-  if (!(most > 0) || !std::isfinite(most)) {
-    throw InvalidInput("target_bytes is " + number_text(options.target_bytes) + "; a file that ends in '" +
-                       options.target_ending + "' takes more than " + number_text(size.fixed) + " bytes.");
-  }
-  return {most, size.of_vertex, size.of_face};
-}
-
-void say_what_it_takes(const SimplifyOptions::Bytes& target, DemToTin& result) {
-  const Tin& tin = result.levels[0].tin;
-  const double bytes = target.of_vertex * static_cast<double>(tin.vertices.size()) +
-                       target.of_face * static_cast<double>(tin.faces.size());
-  if (bytes <= target.most) return;
-  result.warnings.push_back("The file will have some " + number_text(bytes - target.most) +
-                            " bytes more than target_bytes: the tolerance lets no more triangles go.");
-}
-
 void say_what_was_lost(const SimplifyOptions& simplify, DemToTin& result) {
   const std::size_t lost = result.levels[0].report.break_line_edges_lost, all = simplify.break_lines.size();
   if (lost > 0) {
@@ -124,8 +102,8 @@ DemToTin run_dem_to_tin(const DemSource& source, const ErrorModel& model, const 
   simplify.tolerance_m = windows.constant();
   simplify.keep_border = options.keep_border;
   simplify.border_tolerance_m = options.border_tolerance_m;
-  simplify.target_faces = options.target_faces;
-  if (options.target_bytes != 0) simplify.target_bytes = bytes_for(options, source);
+  simplify.target_faces = options.target.faces;
+  simplify.target_bytes = bytes_for(options.target, source.crs_wkt(), true);
   simplify.threads = options.threads;
   simplify.memory_bytes = options.memory_budget;
   const DemPlace place{source.geotransform().of_window(window), metres_per_unit,
@@ -141,7 +119,7 @@ DemToTin run_dem_to_tin(const DemSource& source, const ErrorModel& model, const 
   result.warnings.insert(result.warnings.begin(), notes.begin(), notes.end());
   say_what_stays(result);
   say_what_was_lost(simplify, result);
-  if (options.target_bytes != 0) say_what_it_takes(simplify.target_bytes, result);
+  say_what_is_missed(options.target, simplify.target_bytes, result.levels[0].tin, result.warnings);
   progress.finish();
   return result;
 }

@@ -11,6 +11,7 @@
 
 #include "base/progress.h"
 #include "error_model/error_model.h"
+#include "jobs/tin_target.h"
 #include "jobs/windows.h"
 #include "simplify/simplify.h"
 #include "terrain/dem.h"
@@ -35,11 +36,9 @@ struct DemToTinOptions {
   // that follow the line; empty: of a cell's longer side.
   std::vector<std::vector<Xy>> break_lines;
   std::optional<double> break_line_tolerance_m;
-  std::int64_t target_faces = 0;      // 0 = until nothing can be removed
-  double target_bytes = 0;            // of the file; 0 = no such target
-  std::string target_ending = "ply";  // of the file that target_bytes is for (tin_writer.h)
-  int threads = 0;                    // 0 = all cores
-  std::size_t memory_budget = 0;      // bytes; 0 = three quarters of the machine's memory
+  TinTarget target{};             // none = until nothing can be removed
+  int threads = 0;                // 0 = all cores
+  std::size_t memory_budget = 0;  // bytes; 0 = three quarters of the machine's memory
 };
 
 struct DemToTin {

@@ -139,13 +139,15 @@ SimplifiedAnyTin run_simplify_tin(const Tin& tin, const SimplifyTinJob& job, Pro
   options.height_field = report.vertical;
   options.outline_tolerance_m = report.border_tolerance_m;
   options.keep = job.keep;
-  options.target_faces = job.target_faces;
+  options.target_faces = job.target.faces;
+  options.target_bytes = bytes_for(job.target, tin.crs_wkt, report.vertical);
   TinSimplified made = simplify(tin, std::move(tolerance), job, options, report, progress);
   progress.finish();
   report.faces_before = made.faces_before;
   report.faces_after = made.tin.faces.size();
   report.largest_deviation_m = made.largest_deviation_m;
   report.fixed_vertices = made.fixed_vertices;
+  say_what_is_missed(job.target, options.target_bytes, made.tin, report.warnings);
   if (made.fixed_vertices > 0) {
     report.warnings.push_back(std::to_string(made.fixed_vertices) +
                               " vertices stay as they are: the faces around them make no plain surface.");

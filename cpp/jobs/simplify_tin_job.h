@@ -10,6 +10,7 @@
 
 #include "base/progress.h"
 #include "error_model/error_model.h"
+#include "jobs/tin_target.h"
 #include "terrain/tin.h"
 
 namespace sightbound {
@@ -26,7 +27,7 @@ struct SimplifyTinJob {
   // tolerance not at all, with a model by z(c) times its horizontal error; others by the least tolerance.
   std::optional<double> border_tolerance_m;
   std::vector<std::uint8_t> keep;  // vertices that stay where not 0; empty = none
-  std::int64_t target_faces = 0;   // 0 = until nothing can be removed
+  TinTarget target{};                // none = until nothing can be removed
   double voxel_m = 0;              // of the permission grid; 0 = chosen
   int threads = 0;                 // of building it; 0 = all cores
   std::size_t memory_budget = 0;   // bytes; 0 = three quarters of the machine's memory

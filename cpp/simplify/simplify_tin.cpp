@@ -35,6 +35,14 @@ void check(const Tin& tin, const TinSimplifyOptions& options) {
   }
 }
 
+bool is_enough(const TinMesh& mesh, const TinSimplifyOptions& options) {
+  const auto faces = static_cast<double>(mesh.count_faces()),
+             vertices = static_cast<double>(mesh.count_vertices());
+  const SimplifyOptions::Bytes& bytes = options.target_bytes;
+  return faces <= static_cast<double>(options.target_faces) ||
+         bytes.of_vertex * vertices + bytes.of_face * faces <= bytes.most;
+}
+
 float rounded_up(double value) {
   const auto near = static_cast<float>(value);
   return near < value ? std::nextafter(near, std::numeric_limits<float>::infinity()) : near;
@@ -90,12 +98,12 @@ TinSimplified simplify_tin(const Tin& tin, Containment& containment, const TinSi
   }
   progress.check();
   TinDecimation decimation(mesh, outline, containment, options.height_field);
-  const auto target = static_cast<std::size_t>(options.target_faces);
+  const auto enough = [&] { return is_enough(mesh, options); };
   double left = 1;
-  for (std::size_t n = 0; n < kMostPasses && mesh.count_faces() > target; ++n) {
+  for (std::size_t n = 0; n < kMostPasses && !enough(); ++n) {
     const double share = (n == 0 ? 0.7 : 0.5) * left;
     left -= share;
-    const std::size_t gone = decimation.pass(target, share, progress);
+    const std::size_t gone = decimation.pass(enough, share, progress);
     if (static_cast<double>(gone) <= kLeastGain * static_cast<double>(mesh.count_faces())) break;
   }
   write(mesh, containment, tin, result, progress);

@@ -22,6 +22,7 @@
 
 #include "base/progress.h"
 #include "simplify/containment.h"
+#include "simplify/simplify.h"
 #include "terrain/tin.h"
 
 namespace sightbound {
@@ -32,7 +33,10 @@ struct TinSimplifyOptions {
   bool height_field = false;       // plan decides: outline, turned faces; new vertices go up and down
   double outline_tolerance_m = 0;  // 0: only vertices within straight pieces go
   std::vector<std::uint8_t> keep;  // vertices that stay where they are where not 0; empty = none
-  std::int64_t target_faces = 0;   // stop there, cheapest collapses first; 0 = until nothing can be removed
+  // Stop as soon as there are no more faces, or as vertices and faces take no more bytes, cheapest collapses
+  // first. 0 = until nothing can be removed.
+  std::int64_t target_faces = 0;
+  SimplifyOptions::Bytes target_bytes;
 };
 
 struct TinSimplified {

@@ -112,7 +112,7 @@ void TinDecimation::push(std::int32_t a, std::int32_t b) {
     queue_.push(static_cast<float>(cost(all.front())), {a, b, changes_[at(a)], changes_[at(b)]});
 }
 
-std::size_t TinDecimation::pass(std::size_t least_faces, double share, Progress& progress) {
+std::size_t TinDecimation::pass(const std::function<bool()>& enough, double share, Progress& progress) {
   std::size_t edges = 0;
   for (std::int32_t f = 0; f < mesh_.faces(); ++f) {
     if (f % 4096 == 0) progress.check();
@@ -132,7 +132,7 @@ std::size_t TinDecimation::pass(std::size_t least_faces, double share, Progress&
   const std::size_t before = mesh_.count_faces();
   const double each = share / static_cast<double>(std::max<std::size_t>(edges, 1));
   Edge edge;
-  for (std::size_t tried = 0; mesh_.count_faces() > least_faces && queue_.pop(edge); ++tried) {
+  for (std::size_t tried = 0; !enough() && queue_.pop(edge); ++tried) {
     if (tried % 64 == 0) progress.check();
     if (edge.change_a != changes_[at(edge.a)] || edge.change_b != changes_[at(edge.b)]) continue;
     if (tried < edges) progress.advance(each);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "base/progress.h"
@@ -21,9 +22,9 @@ class TinDecimation {
   // `in_plan`: the shape of faces counts in x and y alone, and the heights of new vertices are free.
   TinDecimation(TinMesh& mesh, TinOutline& outline, Containment& containment, bool in_plan);
 
-  // Tries all edges that have changed since they were tried, down to so many faces. How many faces went.
+  // Tries all edges that have changed since they were tried, until it is enough. How many faces went.
   // Advances `progress` by `share`.
-  std::size_t pass(std::size_t least_faces, double share, Progress& progress);
+  std::size_t pass(const std::function<bool()>& enough, double share, Progress& progress);
 
  private:
   struct Edge {

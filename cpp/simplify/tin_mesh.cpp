@@ -16,10 +16,12 @@ TinMesh::TinMesh(const Tin& tin)
     next_[at(c)] = first;
     first = c;
   }
+  for (std::int32_t v = 0; v < vertices(); ++v) used_ += has_faces(v);
 }
 
 void TinMesh::collapse(std::int32_t gone, std::int32_t kept, const Xyz& to) {
   places_[at(kept)] = to;
+  --used_;
   std::int32_t last = kGone;
   for (std::int32_t c = first_[at(gone)]; c != kGone; c = next_[at(c)]) {
     Face& face = faces_[at(c / 3)];

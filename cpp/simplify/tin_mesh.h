@@ -20,6 +20,7 @@ class TinMesh {
   std::int32_t vertices() const { return static_cast<std::int32_t>(places_.size()); }  // with removed ones
   std::int32_t faces() const { return static_cast<std::int32_t>(faces_.size()); }
   std::size_t count_faces() const { return alive_; }
+  std::size_t count_vertices() const { return used_; }
 
   bool alive(std::int32_t face) const { return faces_[at(face)][0] != kGone; }
   const Face& face(std::int32_t face) const { return faces_[at(face)]; }
@@ -43,7 +44,7 @@ class TinMesh {
   std::vector<Xyz> places_;
   std::vector<Face> faces_;
   std::vector<std::int32_t> first_, next_;  // corners
-  std::size_t alive_ = 0;
+  std::size_t alive_ = 0, used_ = 0;        // faces, vertices with faces
 };
 
 }  // namespace sightbound

@@ -30,8 +30,6 @@ class DemToTin(TinMaker):
         border = QgsProcessingParameterBoolean(
             "KEEP_BORDER", tr("Keep all samples of the outline (tiles that fit)"), False, True
         )
-        faces = blocks.number("TARGET_TRIANGLES", tr("Stop at so many triangles"), None, 1, None, integer=True)
-        size = blocks.number("TARGET_SIZE", tr("Stop at a file of so many megabytes"), None, 0.001)
         lines = places("BREAK_LINES", tr("Break lines: edges of the TIN"), QgsProcessing.SourceType.TypeVectorLine)
         stray = blocks.metres("BREAK_LINE_TOLERANCE", tr("How far edges may stray from break lines (m; empty: a cell)"))
         outline = blocks.metres("BORDER_TOLERANCE", tr("How far the outline may move in plan (m; empty: not at all)"))
@@ -51,11 +49,9 @@ class DemToTin(TinMaker):
                 blocks.advanced(blocks.points("OBSERVERS", tr("Observers whose view must stay"), optional=True)),
             ]
             + [blocks.advanced(height) for height in blocks.height_block()]
+            + [blocks.advanced(border), blocks.advanced(outline)]
+            + self.target_parameters()
             + [
-                blocks.advanced(border),
-                blocks.advanced(outline),
-                blocks.advanced(faces),
-                blocks.advanced(size),
                 blocks.vertical_unit_parameter(),
                 blocks.extent_parameter(),
                 blocks.threads_parameter(),
@@ -76,14 +72,13 @@ class DemToTin(TinMaker):
             return tr("{}: the accuracy of the heights says the same thing; give only one of them.").format(said[0])
         if not said and not any(given(parameters, name) for name in errors):
             return tr("TOLERANCE: say how far the TIN may be from the elevation model, here or as VERTICAL_ACCURACY.")
-        if given(parameters, "TARGET_TRIANGLES") and given(parameters, "TARGET_SIZE"):
-            return tr("TARGET_SIZE: TARGET_TRIANGLES says the same thing; give only one of them.")
         if given(parameters, "BREAK_LINE_TOLERANCE") and not given(parameters, "BREAK_LINES"):
             return tr("BREAK_LINE_TOLERANCE: give the BREAK_LINES too.")
         moves = given(parameters, "BORDER_TOLERANCE") and number_or_none(self, parameters, "BORDER_TOLERANCE", context)
         if moves and self.parameterAsBoolean(parameters, "KEEP_BORDER", context):
             return tr("BORDER_TOLERANCE: KEEP_BORDER keeps the outline where it is; give only one of them.")
-        return self.bad_focus(parameters) or self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
+        bad = self.bad_target(parameters) or self.bad_focus(parameters) or self.bad_confidence(parameters, context)
+        return bad or check_error_block(self, parameters, context)
 
     def read_input(self, parameters, context, feedback):
         self.dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
@@ -102,8 +97,6 @@ class DemToTin(TinMaker):
             )
 
     def compute(self, sightbound, parameters, context, feedback):
-        faces = number_or_none(self, parameters, "TARGET_TRIANGLES", context)
-        megabytes = number_or_none(self, parameters, "TARGET_SIZE", context)
         dem = open_dem(sightbound, self.dem, self.vertical_unit, feedback)
         tin = sightbound.dem_to_tin(
             dem,
@@ -116,9 +109,7 @@ class DemToTin(TinMaker):
             border_tolerance=number_or_none(self, parameters, "BORDER_TOLERANCE", context) or 0.0,
             break_lines=lines_in(self.break_lines),
             break_line_tolerance=number_or_none(self, parameters, "BREAK_LINE_TOLERANCE", context),
-            target_faces=None if faces is None else int(faces),
-            target_bytes=None if megabytes is None else megabytes * 1e6,
-            target_ending=self._ending(parameters, context),
+            **self.target(parameters, context),
             threads=self.threads(parameters, context),
             progress=Progress(feedback, 30.0 if self.observers else 0.0, 90.0),
         )
@@ -145,6 +136,3 @@ class DemToTin(TinMaker):
             feedback.pushWarning(warning)
         feedback.pushInfo(tr("Samples free to move by the whole tolerance: {:.1%}").format(report["free_share"]))
         return tolerance
-
-    def _ending(self, parameters, context):
-        return self.parameterAsFileOutput(parameters, "OUTPUT", context).rpartition(".")[2].lower()

@@ -11,12 +11,12 @@ from qgis.core import (
 
 from .. import parameters as blocks
 from ..error_block import log_error_model
-from ..errors import core_errors
+from ..errors import core_errors, in_our_words
 from ..feedback import Progress
 from ..places_on_dem import places
 from ..styling import StyleOnLoad
 from ..text import tr
-from ..values import given
+from ..values import given, number_or_none
 from .base import SightboundAlgorithm
 
 MESH_FILES = "PLY (*.ply);;UGRID NetCDF (*.nc);;2DM (*.2dm);;OBJ (*.obj);;GeoPackage (*.gpkg)"
@@ -63,10 +63,30 @@ class TinMaker(SimplificationAlgorithm):
         growth = self.parameterAsDouble(parameters, "FOCUS_GROWTH", context)
         return self.parameterAsDouble(parameters, "TOLERANCE", context) + growth / 1000.0 * distances
 
+    def target_parameters(self):
+        faces = blocks.number("TARGET_TRIANGLES", tr("Stop at so many triangles"), None, 1, None, integer=True)
+        size = blocks.number("TARGET_SIZE", tr("Stop at a file of so many megabytes"), None, 0.001)
+        return [blocks.advanced(faces), blocks.advanced(size)]
+
+    def bad_target(self, parameters):
+        if given(parameters, "TARGET_TRIANGLES") and given(parameters, "TARGET_SIZE"):
+            return tr("TARGET_SIZE: TARGET_TRIANGLES says the same thing; give only one of them.")
+        return ""
+
+    def target(self, parameters, context):
+        """The core's arguments."""
+        faces = number_or_none(self, parameters, "TARGET_TRIANGLES", context)
+        megabytes = number_or_none(self, parameters, "TARGET_SIZE", context)
+        return {
+            "target_faces": None if faces is None else int(faces),
+            "target_bytes": None if megabytes is None else megabytes * 1e6,
+            "target_ending": self.parameterAsFileOutput(parameters, "OUTPUT", context).rpartition(".")[2].lower(),
+        }
+
     def told(self, report, feedback):
         """The numbers of a report, told in the log too."""
         for warning in report["warnings"]:
-            feedback.pushWarning(warning)
+            feedback.pushWarning(in_our_words(warning))
         results = {name: report[key] for name, _, key in self.NUMBERS}
         for name, label, _ in self.NUMBERS:
             feedback.pushInfo(f"{tr(label)}: {results[name]:.6g}")

@@ -42,7 +42,6 @@ class SimplifyTin(TinMaker):
     def initAlgorithm(self, configuration=None):
         polygon = [QgsProcessing.SourceType.TypeVectorPolygon]
         keep = QgsProcessingParameterFeatureSource("KEEP", tr("Areas to keep at full resolution"), polygon, None, True)
-        faces = blocks.number("TARGET_TRIANGLES", tr("Stop at so many triangles"), None, 1, None, integer=True)
         file = QgsProcessingParameterFile("FILE", tr("File of a TIN: PLY, OBJ, 2DM, LandXML, ..."), optional=True)
         field = QgsProcessingParameterString("TOLERANCE_FIELD", tr("Tolerance as an attribute of the vertices"), None, False, True)
         for parameter in (
@@ -60,7 +59,9 @@ class SimplifyTin(TinMaker):
             + [
                 blocks.advanced(blocks.metres("BORDER_TOLERANCE", tr("How far the outline may move (empty: chosen)"))),
                 blocks.advanced(keep),
-                blocks.advanced(faces),
+            ]
+            + self.target_parameters()
+            + [
                 blocks.advanced(blocks.metres("VOXEL", tr("Side of the voxels (empty: chosen)"))),
                 blocks.vertical_unit_parameter(),
                 blocks.threads_parameter(),
@@ -78,7 +79,7 @@ class SimplifyTin(TinMaker):
         errors = [name for name in ("VERTICAL_ACCURACY", "ERROR_RASTER", "ERROR_MODEL") if given(parameters, name)]
         if bool(said) == bool(errors):
             return tr("TOLERANCE: say how far the TIN may be from the original, here or as VERTICAL_ACCURACY; one of the two.")
-        return self.bad_focus(parameters) or self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
+        return self.bad_target(parameters) or self.bad_focus(parameters) or self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
 
     def read_input(self, parameters, context, feedback):
         self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
@@ -92,7 +93,6 @@ class SimplifyTin(TinMaker):
 
     def compute(self, sightbound, parameters, context, feedback):
         original = self._original(sightbound, feedback)
-        faces = number_or_none(self, parameters, "TARGET_TRIANGLES", context)
         tolerance = self._tolerance(original, parameters, context, feedback)
         made = sightbound.simplify(
             original,
@@ -101,7 +101,7 @@ class SimplifyTin(TinMaker):
             confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
             border_tolerance=number_or_none(self, parameters, "BORDER_TOLERANCE", context),
             keep=vertices_in(self.keep, original, feedback),
-            target_faces=None if faces is None else int(faces),
+            **self.target(parameters, context),
             voxel_size=number_or_none(self, parameters, "VOXEL", context),
             threads=self.threads(parameters, context),
             progress=Progress(feedback, 10.0, 90.0),

@@ -235,6 +235,13 @@ def test_it_stops_at_a_size_of_the_file(dem, tmp_path, ending):
     assert "more than target_bytes" in tin.report["warnings"][0]
 
 
+def test_a_target_that_the_tolerance_forbids_is_told(dem):
+    tin = sb.dem_to_tin(dem, tolerance=0.01, target_faces=9)
+    assert tin.report["warnings"] == [
+        f"target_faces is 9, but {len(tin.faces)} are left: the tolerance lets no more triangles go."
+    ]
+
+
 def test_the_same_bytes_for_any_number_of_threads(dem):
     one, two = (sb.dem_to_tin(dem, tolerance=1.5, threads=n) for n in (1, 2))
     assert np.array_equal(one.vertices, two.vertices) and np.array_equal(one.faces, two.faces)

@@ -194,6 +194,20 @@ def test_targets_and_what_is_kept(body):
     assert all(tuple(v) in there for v in original.vertices[::13].tolist())
 
 
+def test_the_file_has_the_size_asked_for_or_a_warning_tells(body, points, tmp_path):
+    for original in (sb.Tin(*body), sb.Tin.from_points(points)):
+        sb.simplify(original, tolerance=0.5).write(tmp_path / "least.ply")
+        target = (tmp_path / "least.ply").stat().st_size + 3000
+        made = sb.simplify(original, tolerance=0.5, target_bytes=target)
+        made.write(tmp_path / "made.ply")
+        assert target - 150 < (tmp_path / "made.ply").stat().st_size <= target
+        assert not any("target" in warning for warning in made.report["warnings"])
+        missed = sb.simplify(original, tolerance=0.01, target_bytes=1500).report
+        assert any("more than target_bytes: the tolerance lets" in warning for warning in missed["warnings"])
+    missed = sb.simplify(original, tolerance=0.01, target_faces=7).report
+    assert f"target_faces is 7, but {missed['faces_after']} are left: the tolerance lets no more triangles go." in missed["warnings"]
+
+
 def test_same_bytes_for_any_number_of_threads(body, tmp_path):
     files = []
     for threads in (1, 2):
@@ -221,6 +235,8 @@ def test_quads_become_triangles():
     ({"tolerance": "negative"}, r"tolerance is -1 at vertex 7 \(1 such of \d+\); give metres"),
     ({"tolerance": 1, "border_tolerance": -2}, "border_tolerance is -2"),
     ({"tolerance": 1, "target_faces": 0}, "target_faces"),
+    ({"tolerance": 1, "target_bytes": 100}, "takes more than"),
+    ({"tolerance": 1, "target_bytes": 1e5, "target_faces": 7}, "only one of them"),
     ({"tolerance": 1, "keep": [1, 0]}, "keep has shape"),
     ({"tolerance": 1, "voxel_size": 0}, "voxel_size"),
     ({"error_model": sb.ErrorModel(vertical_rmse=1, geologic_variation=0), "confidence": 1.5}, "confidence"),

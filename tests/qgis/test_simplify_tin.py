@@ -188,6 +188,11 @@ def test_height_fields_lose_nothing_to_voxels(run, dem, tmp_path):
 def test_targets_borders_and_areas_to_keep(run, mesh, tmp_path):
     plain = simplify(run, mesh, tmp_path)["TRIANGLES"]
     assert abs(simplify(run, mesh, tmp_path, TARGET_TRIANGLES=900)["TRIANGLES"] - 900) <= 2
+    small = simplify(run, mesh, tmp_path, TARGET_SIZE=0.016, OUTPUT=str(tmp_path / "small.ply"))
+    assert 15_900 < (tmp_path / "small.ply").stat().st_size <= 16_000 and small["TRIANGLES"] > plain
+    log = scenes.Log()
+    simplify(run, mesh, tmp_path, TARGET_TRIANGLES=5, feedback=log)
+    assert [line for line in log.warnings if "TARGET_TRIANGLES is 5, but" in line]
     assert simplify(run, mesh, tmp_path, BORDER_TOLERANCE=0.0)["TRIANGLES"] > plain
     assert simplify(run, mesh, tmp_path, VOXEL=0.2)["TRIANGLES"] > plain
     areas = square(tmp_path / "keep.gpkg", scenes.WEST + 8, scenes.NORTH - 45, 10)
@@ -224,6 +229,7 @@ def test_the_mesh_is_loaded_with_its_edges(provider, mesh, tmp_path, log):
     ({"TOLERANCE": None, "VERTICAL_ACCURACY": 1.0, "CONFIDENCE": 1.0}, "CONFIDENCE"),
     ({"TOLERANCE": None, "VERTICAL_ACCURACY": 1.0, "GEOLOGIC_RASTER": "dem"}, "GEOLOGIC_VARIATION|GEOLOGIC_RASTER"),
     ({"TOLERANCE_FIELD": "reach"}, "TOLERANCE_FIELD: TOLERANCE says the same"),
+    ({"TARGET_SIZE": 1.0, "TARGET_TRIANGLES": 9}, "TARGET_SIZE: TARGET_TRIANGLES says"),
     ({"FOCUS_GROWTH": 1.0}, "FOCUS_GROWTH: give it together"),
     ({"INPUT": None}, "INPUT: give a mesh"),
     ({"FILE": "missing.ply"}, "INPUT: give a mesh"),

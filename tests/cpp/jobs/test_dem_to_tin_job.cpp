@@ -142,7 +142,7 @@ TEST(DemToTin, RefusesWhatItCannotHold) {
   options.levels = {1};
   EXPECT_TRUE(says(complaint<InvalidInput>([&] { Waves().tin(error(0.5), options); }), "confidence"));
   options = {};
-  options.target_faces = -1;
+  options.target.faces = -1;
   EXPECT_THROW(Waves().tin(error(0.5), options), InvalidInput);
 }
 
