@@ -16,7 +16,18 @@ namespace sightbound::python {
 
 namespace {
 
+using Doubles = py::array_t<double, py::array::c_style>;
 using Flags = py::array_t<std::uint8_t, py::array::c_style>;
+
+// Polylines [k, 3] in the CRS, heights NaN where they have none.
+void set_break_lines(SimplifyTinJob& job, const std::shared_ptr<RegularTin>& tin,
+                     const std::vector<Doubles>& lines) {
+  for (const Doubles& line : lines) {
+    std::vector<Xyz>& local = job.break_lines.emplace_back();
+    for (py::ssize_t i = 0; i < line.shape(0); ++i)
+      local.push_back(tin->tin.from_crs({line.at(i, 0), line.at(i, 1), line.at(i, 2)}));
+  }
+}
 
 py::tuple simplify(const std::shared_ptr<RegularTin>& tin, const SimplifyTinJob& job,
                    const py::object& progress) {
@@ -49,6 +60,8 @@ void bind_simplify_tin(py::module_& m) {
       .def_readwrite("model", &SimplifyTinJob::model)
       .def_readwrite("confidence", &SimplifyTinJob::confidence)
       .def_readwrite("border_tolerance", &SimplifyTinJob::border_tolerance_m)
+      .def("set_break_lines", &set_break_lines, py::arg("tin"), py::arg("lines"))
+      .def_readwrite("break_line_tolerance", &SimplifyTinJob::break_line_tolerance_m)
       .def(
           "set_keep",
           [](SimplifyTinJob& self, const Flags& values) {

@@ -41,6 +41,8 @@ _PARAMETER_OF = {
     "target_height_reference": "TARGET_HEIGHT_REFERENCE",
     "voxel_m": "VOXEL",
     "voxel_size": "VOXEL",
+    "break_lines": "BREAK_LINES",
+    "break_line_tolerance": "BREAK_LINE_TOLERANCE",
     "border_tolerance": "BORDER_TOLERANCE",
     "target_faces": "TARGET_TRIANGLES",
     "target_bytes": "TARGET_SIZE",

@@ -41,6 +41,26 @@ def read_features(algorithm, parameters, name, context, feedback):
     return Features(name, together, source.sourceCrs(), context.transformContext())
 
 
+def read_lines(algorithm, parameters, name, context, feedback):
+    """The lines of a layer, not dissolved; None if it was left empty."""
+    features = read_features(algorithm, parameters, name, context, feedback)
+    if features is not None:
+        source = algorithm.parameterAsSource(parameters, name, context)
+        features.together = QgsGeometry.collectGeometry([one.geometry() for one in source.getFeatures()])
+    return features
+
+
+def lines_of(features, tin):
+    """Polylines in the TIN's CRS, with heights where they have some; None without features. Any thread."""
+    if features is None:
+        return None
+    geometry, lines = _over(features, tin), []  # which its parts are not to outlive
+    for part in geometry.constParts():
+        vertices = list(part.vertices())
+        lines.append([(one.x(), one.y(), one.z()) if part.is3D() else (one.x(), one.y()) for one in vertices])
+    return lines
+
+
 def vertices_in(features, tin, feedback):
     """For each vertex 1 where it lies in a feature, else 0; None without features. Any thread."""
     if features is None:
@@ -58,7 +78,8 @@ def vertices_in(features, tin, feedback):
 
 def distances_from(features, tin, feedback):
     """Metres in plan from each vertex to the nearest feature. Any thread."""
-    engine = _prepared(_over(features, tin))
+    geometry = _over(features, tin)
+    engine = _prepared(geometry)
     units = [engine.distance(QgsPoint(x, y)) for x, y, _ in until_cancelled(tin.vertices.tolist(), feedback)]
     crs = _crs_of(tin)
     metres = QgsUnitTypes.fromUnitToUnitFactor(crs.mapUnits(), QgsUnitTypes.DistanceUnit.DistanceMeters)

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from ._arguments import Box, FloatArray, Progress
+    from collections.abc import Sequence
+
+    from ._arguments import Box, Doubles, FloatArray, Progress
     from ._quantities import Quantity
 
 _DEFAULTS = core.defaults()
@@ -177,6 +179,8 @@ def simplify(
     error_model: ErrorModel | None = None,
     confidence: float = _DEFAULTS["confidence"],
     border_tolerance: float | None = None,
+    break_lines: Sequence[npt.ArrayLike] | None = None,
+    break_line_tolerance: float = 0.0,
     keep: npt.ArrayLike | None = None,
     target_faces: int | None = None,
     target_bytes: float | None = None,
@@ -205,6 +209,11 @@ def simplify(
             lie over another), else in space; its vertices
             stay or go, its corners (60 degrees and more) stay. None: for height fields 0, or z(confidence) times the model's
             horizontal error; for others the least tolerance.
+        break_lines: arrays [k, 2] or [k, 3], polylines that run along edges of the TIN (over more vertices than their own, if need be)
+            and still do in the result: each place of a line has an edge within break_line_tolerance, and the other way round. In the
+            CRS; heights count, and are needed, where the TIN is no height field.
+        break_line_tolerance: metres that break lines may move, measured as the outline's; their vertices stay or go, ends, corners (60
+            degrees and more) and where they meet stay. 0: only vertices within straight pieces go.
         keep: array, one for each vertex: those that stay where above 0.
         target_faces: stop at that many faces (give or take one), the cheapest removed first; still within the tolerance, so that more
             may be left: a warning tells. None to remove all that can be.
@@ -230,6 +239,9 @@ def simplify(
     job.confidence = arguments.number("confidence", confidence)
     if border_tolerance is not None:
         job.border_tolerance = arguments.number("border_tolerance", border_tolerance)
+    if break_lines is not None:
+        job.set_break_lines(core_tin(tin), [_line(number, line) for number, line in enumerate(break_lines, 1)])
+    job.break_line_tolerance = arguments.number("break_line_tolerance", break_line_tolerance)
     if keep is not None:
         job.set_keep(_kept(keep, core_tin(tin).vertex_count))
     _set_target(job, target_faces, target_bytes, target_ending)
@@ -301,6 +313,18 @@ def _set_tolerance(job: Any, given: Any) -> None:
     if values.ndim != 1:
         raise ValueError(f"tolerance has shape {values.shape}; give one number, or an array with one for each vertex.")
     job.set_tolerances(values)
+
+
+def _line(number: int, given: Any) -> Doubles:
+    import numpy as np
+
+    try:
+        line = np.ascontiguousarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"line {number} of break_lines must be an array [k, 2] or [k, 3] of numbers.") from None
+    if line.ndim != 2 or line.shape[1] not in (2, 3):
+        raise ValueError(f"line {number} of break_lines has shape {line.shape}; give [k, 2] (x, y) or [k, 3] (x, y, height).")
+    return line if line.shape[1] == 3 else np.column_stack([line, np.full(len(line), np.nan)])
 
 
 def _kept(given: Any, vertices: int) -> Any:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "jobs/simplify_tin_job.h"
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "base/number_text.h"
 #include "jobs/tin_tolerance.h"
 #include "simplify/both_ways.h"
+#include "simplify/break_lines.h"
 #include "simplify/height_containment.h"
 #include "simplify/simplify_tin.h"
 #include "volume/error_volume.h"
@@ -103,6 +105,20 @@ TinSimplified simplify_height_field(const Tin& tin, const std::vector<float>& to
   return simplify_tin(tin, again, still, progress);
 }
 
+std::vector<TinEdge> break_edges(const Tin& tin, const SimplifyTinJob& job, bool in_plan,
+                                 Progress& progress) {
+  for (const std::vector<Xyz>& line : job.break_lines) {
+    for (const Xyz& p : line) {
+      if (!std::isfinite(p.x) || !std::isfinite(p.y))
+        throw InvalidInput("break_lines has a vertex without place.");
+      if (in_plan || std::isfinite(p.z)) continue;
+      throw InvalidInput(
+          "break_lines has a vertex without height; a TIN that is no height field needs lines with heights.");
+    }
+  }
+  return edges_along(tin, job.break_lines, in_plan, progress);
+}
+
 TinSimplified simplify(const Tin& tin, TinTolerance tolerance, const SimplifyTinJob& job,
                        const TinSimplifyOptions& options, SimplifyTinReport& report, Progress& progress) {
   if (report.vertical) {
@@ -138,6 +154,8 @@ SimplifiedAnyTin run_simplify_tin(const Tin& tin, const SimplifyTinJob& job, Pro
   TinSimplifyOptions options;
   options.height_field = report.vertical;
   options.outline_tolerance_m = report.border_tolerance_m;
+  options.break_lines = break_edges(tin, job, report.vertical, progress);
+  options.break_tolerance_m = job.break_line_tolerance_m;
   options.keep = job.keep;
   options.target_faces = job.target.faces;
   options.target_bytes = bytes_for(job.target, tin.crs_wkt, report.vertical);

@@ -26,8 +26,12 @@ struct SimplifyTinJob {
   // How far the outline may go: in plan for height fields, else in space. Empty: height fields with a
   // tolerance not at all, with a model by z(c) times its horizontal error; others by the least tolerance.
   std::optional<double> border_tolerance_m;
+  // Polylines along which edges run, in metres from the Tin's origin, and still run in the result; z counts
+  // where the TIN is no height field. How far they may move, measured as the outline's.
+  std::vector<std::vector<Xyz>> break_lines;
+  double break_line_tolerance_m = 0;
   std::vector<std::uint8_t> keep;  // vertices that stay where not 0; empty = none
-  TinTarget target{};                // none = until nothing can be removed
+  TinTarget target{};              // none = until nothing can be removed
   double voxel_m = 0;              // of the permission grid; 0 = chosen
   int threads = 0;                 // of building it; 0 = all cores
   std::size_t memory_budget = 0;   // bytes; 0 = three quarters of the machine's memory

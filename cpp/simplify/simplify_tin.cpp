@@ -25,6 +25,10 @@ void check(const Tin& tin, const TinSimplifyOptions& options) {
     throw InvalidInput("border_tolerance is " + number_text(options.outline_tolerance_m) +
                        "; give metres, 0 or more.");
   }
+  if (!(options.break_tolerance_m >= 0 && std::isfinite(options.break_tolerance_m))) {
+    throw InvalidInput("break_line_tolerance is " + number_text(options.break_tolerance_m) +
+                       "; give metres, 0 or more.");
+  }
   if (!options.keep.empty() && options.keep.size() != tin.vertices.size()) {
     throw InvalidInput("keep has " + std::to_string(options.keep.size()) + " values, the TIN " +
                        std::to_string(tin.vertices.size()) + " vertices; give one for each.");
@@ -91,13 +95,14 @@ TinSimplified simplify_tin(const Tin& tin, Containment& containment, const TinSi
   TinSimplified result;
   result.faces_before = tin.faces.size();
   TinMesh mesh(tin);
-  TinOutline outline(mesh, options.outline_tolerance_m, options.height_field);
-  result.fixed_vertices = outline.not_manifold();
+  const TinLineRules rules{options.outline_tolerance_m, options.break_tolerance_m, options.height_field};
+  TinLines lines(mesh, options.break_lines, rules, progress);
+  result.fixed_vertices = lines.not_manifold();
   for (std::size_t v = 0; v < options.keep.size(); ++v) {
-    if (options.keep[v] != 0) outline.fix(static_cast<std::int32_t>(v));
+    if (options.keep[v] != 0) lines.fix(static_cast<std::int32_t>(v));
   }
   progress.check();
-  TinDecimation decimation(mesh, outline, containment, options.height_field);
+  TinDecimation decimation(mesh, lines, containment, options.height_field);
   const auto enough = [&] { return is_enough(mesh, options); };
   double left = 1;
   for (std::size_t n = 0; n < kMostPasses && !enough(); ++n) {

@@ -7,7 +7,8 @@
 //   2 The topology stays: components, holes, handles; where the surface is not manifold it stays as it is.
 //   3 At each collapse a face turns by less than kMostTurn and none loses its width; with `height_field`
 //     none is turned over in plan.
-//   4 The outline keeps to its tolerance, both ways (tin_outline.h); its corners stay.
+//   4 The outline keeps to its tolerance, both ways (tin_lines.h), and so do break lines, along which edges
+//     still run; ends, corners and meeting places of these lines stay.
 //   5 Where nothing is allowed only what is coplanar goes (decided without rounding).
 //   6 The same bytes every time: one thread.
 // That every place of the original has the result near follows for height fields, which keep their footprint;
@@ -23,6 +24,7 @@
 #include "base/progress.h"
 #include "simplify/containment.h"
 #include "simplify/simplify.h"
+#include "simplify/tin_lines.h"
 #include "terrain/tin.h"
 
 namespace sightbound {
@@ -30,8 +32,10 @@ namespace sightbound {
 inline constexpr double kMostTurn = 0.25;  // cosine (75 degrees)
 
 struct TinSimplifyOptions {
-  bool height_field = false;       // plan decides: outline, turned faces; new vertices go up and down
-  double outline_tolerance_m = 0;  // 0: only vertices within straight pieces go
+  bool height_field = false;         // plan decides: outline, turned faces; new vertices go up and down
+  double outline_tolerance_m = 0;    // 0: only vertices within straight pieces go
+  std::vector<TinEdge> break_lines;  // edges; break_lines.h finds them
+  double break_tolerance_m = 0;
   std::vector<std::uint8_t> keep;  // vertices that stay where they are where not 0; empty = none
   // Stop as soon as there are no more faces, or as vertices and faces take no more bytes, cheapest collapses
   // first. 0 = until nothing can be removed.

@@ -37,9 +37,9 @@ double thickness(const std::array<Xyz, 3>& p) { return length(normal_of(p)) / lo
 
 }  // namespace
 
-TinDecimation::TinDecimation(TinMesh& mesh, TinOutline& outline, Containment& containment, bool in_plan)
+TinDecimation::TinDecimation(TinMesh& mesh, TinLines& lines, Containment& containment, bool in_plan)
     : mesh_(mesh),
-      outline_(outline),
+      lines_(lines),
       containment_(containment),
       in_plan_(in_plan),
       quadrics_(at(mesh.vertices())),
@@ -59,13 +59,7 @@ void TinDecimation::add_quadrics() {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::int32_t v = mesh_.face(f)[i], w = mesh_.face(f)[(i + 1) % 3];
       quadrics_[at(v)].add_plane(unit, {}, size / 6);
-      if (outline_.kind(v) == TinVertexKind::kInside || outline_.kind(w) == TinVertexKind::kInside) continue;
-      std::size_t faces = 0;
-      mesh_.for_each_face(v, [&](std::int32_t g, std::int32_t) {
-        const Face& face = mesh_.face(g);
-        faces += std::find(face.begin(), face.end(), w) != face.end();
-      });
-      if (faces > 1) continue;
+      if (lines_.edge(v, w) != TinEdgeKind::kOutline) continue;
       const Xyz edge = p[(i + 1) % 3] - p[i], aside = cross(edge, unit);
       for (const std::int32_t end : {v, w})
         quadrics_[at(end)].add_plane((1 / length(aside)) * aside, {}, dot(edge, edge));
@@ -78,13 +72,17 @@ std::array<Xyz, 3> TinDecimation::corners(std::int32_t face) const {
   return {mesh_.place(f[0]), mesh_.place(f[1]), mesh_.place(f[2])};
 }
 
+bool TinDecimation::between_lines(std::int32_t a, std::int32_t b) const {
+  return lines_.kind(a) != TinVertexKind::kInside && lines_.kind(b) != TinVertexKind::kInside;
+}
+
 double TinDecimation::cost(const Collapse& c) const {
   return std::max(0.0, quadrics_[at(c.gone)].cost(c.to - mesh_.place(c.gone)) +
                            quadrics_[at(c.kept)].cost(c.to - mesh_.place(c.kept)));
 }
 
 std::vector<TinDecimation::Collapse> TinDecimation::candidates(std::int32_t a, std::int32_t b) const {
-  const TinVertexKind of_a = outline_.kind(a), of_b = outline_.kind(b);
+  const TinVertexKind of_a = lines_.kind(a), of_b = lines_.kind(b);
   std::vector<Collapse> all;
   if (of_a == TinVertexKind::kInside && of_b == TinVertexKind::kInside) {
     const Xyz &from = mesh_.place(a), &to = mesh_.place(b), half = 0.5 * (to - from);
@@ -94,10 +92,10 @@ std::vector<TinDecimation::Collapse> TinDecimation::candidates(std::int32_t a, s
     all = {{a, b, middle + both.optimum({})}, {a, b, middle}, {a, b, to}, {b, a, from}};
   } else {
     for (const auto& [gone, kept] : {std::pair(a, b), std::pair(b, a)}) {
-      const TinVertexKind kind = outline_.kind(gone), other = outline_.kind(kept);
+      const TinVertexKind kind = lines_.kind(gone);
       const bool goes = kind == TinVertexKind::kInside
-                            ? other != TinVertexKind::kInside
-                            : kind == TinVertexKind::kOutline && other != TinVertexKind::kInside;
+                            ? lines_.kind(kept) != TinVertexKind::kInside
+                            : kind != TinVertexKind::kFixed && lines_.edge(gone, kept) != TinEdgeKind::kNone;
       if (goes) all.push_back({gone, kept, mesh_.place(kept)});
     }
   }
@@ -119,11 +117,12 @@ std::size_t TinDecimation::pass(const std::function<bool()>& enough, double shar
     if (!mesh_.alive(f)) continue;
     const Face face = mesh_.face(f);
     for (std::size_t i = 0; i < 3; ++i) {
-      // Of the two faces at an edge one has it the other way round.
       const std::int32_t a = face[i], b = face[(i + 1) % 3];
-      const bool inside =
-          outline_.kind(a) == TinVertexKind::kInside || outline_.kind(b) == TinVertexKind::kInside;
-      if ((inside && a > b) || !(worth_[at(a)] || worth_[at(b)])) continue;
+      if (!(worth_[at(a)] || worth_[at(b)])) continue;
+      // Of the two faces at an edge one has it the other way round.
+      const TinEdgeKind line = between_lines(a, b) ? lines_.edge(a, b) : TinEdgeKind::kNone;
+      if (line != TinEdgeKind::kOutline && (a > b || (line == TinEdgeKind::kNone && between_lines(a, b))))
+        continue;
       push(a, b);
       ++edges;
     }
@@ -176,16 +175,15 @@ void TinDecimation::look_around(std::int32_t a, std::int32_t b) {
 
 // The link condition (Dey, Edelsbrunner, Guha and Nekhayev 1999): a and b have no neighbour in common but
 // across the edge's own faces, and no edge of the ring either. The outline counts as one more neighbour of
-// all its vertices.
+// all its vertices, and lines are drawn together along themselves only.
 bool TinDecimation::topology_stays() const {
   if (star_.both.empty() || star_.both.size() > 2) return false;
   std::vector<std::int32_t> common;
   std::set_intersection(star_.ring_a.begin(), star_.ring_a.end(), star_.ring_b.begin(), star_.ring_b.end(),
                         std::back_inserter(common));
   if (common.size() != star_.both.size()) return false;
-  const auto on_outline = [this](std::int32_t v) { return outline_.kind(v) != TinVertexKind::kInside; };
   if (star_.both.size() == 2) {
-    if (on_outline(a_) && on_outline(b_)) return false;
+    if (between_lines(a_, b_) && lines_.edge(a_, b_) == TinEdgeKind::kNone) return false;
     const auto across = [&](std::int32_t f) {
       const Face& face = mesh_.face(f);
       return std::count_if(face.begin(), face.end(),
@@ -218,7 +216,7 @@ StarChange TinDecimation::change_of(const Collapse& c) const {
   StarChange change;
   change.gone = star_.both;
   change.to = c.to;
-  change.free_height = in_plan_ && outline_.kind(c.kept) == TinVertexKind::kInside;
+  change.free_height = in_plan_ && lines_.kind(c.kept) == TinVertexKind::kInside;
   const auto add = [&](const std::vector<std::int32_t>& faces, std::int32_t vertex) {
     for (const std::int32_t face : faces) {
       const Face& f = mesh_.face(face);
@@ -234,7 +232,7 @@ StarChange TinDecimation::change_of(const Collapse& c) const {
 }
 
 bool TinDecimation::make_if_allowed(Collapse c) {
-  if (outline_.kind(c.gone) == TinVertexKind::kOutline && !outline_.may_go(c.gone, c.kept)) return false;
+  if (lines_.kind(c.gone) != TinVertexKind::kInside && !lines_.may_go(c.gone, c.kept)) return false;
   StarChange change = change_of(c);
   for (const FaceChange& f : change.changed) {
     if (!well_shaped(corners(f.face), f.after)) return false;
@@ -265,8 +263,8 @@ bool TinDecimation::same_surface(const Collapse& c) const {
   const std::int32_t first = star_.both.front(), second = star_.both.back();
   const auto in_first = [&](std::int32_t f) { return in_plane_of(f, first); };
   if (std::all_of(around.begin(), around.end(), in_first)) {
-    if (outline_.kind(c.gone) == TinVertexKind::kInside) return true;
-    const std::int32_t other = outline_.other_neighbour(c.gone, c.kept);  // the outline must be straight
+    if (lines_.kind(c.gone) != TinVertexKind::kOutline) return true;
+    const std::int32_t other = lines_.other_neighbour(c.gone, c.kept);  // the outline must be straight
     return on_one_line(mesh_.place(other), mesh_.place(c.gone), mesh_.place(c.kept));
   }
   const std::array<Xyz, 3> p = corners(first), q = corners(second);
@@ -282,7 +280,7 @@ void TinDecimation::make(const Collapse& c) {
   TinQuadric& kept = quadrics_[at(c.kept)];
   kept = kept.moved(c.to - mesh_.place(c.kept));
   kept.add(of_gone);
-  if (outline_.kind(c.gone) == TinVertexKind::kOutline) outline_.went(c.gone, c.kept);
+  if (lines_.kind(c.gone) != TinVertexKind::kInside) lines_.went(c.gone, c.kept);
   mesh_.collapse(c.gone, c.kept, c.to);
   ++changes_[at(c.gone)];
   ++changes_[at(c.kept)];

@@ -11,8 +11,8 @@
 #include "base/progress.h"
 #include "simplify/bucket_queue.h"
 #include "simplify/containment.h"
+#include "simplify/tin_lines.h"
 #include "simplify/tin_mesh.h"
-#include "simplify/tin_outline.h"
 #include "simplify/tin_quadric.h"
 
 namespace sightbound {
@@ -20,7 +20,7 @@ namespace sightbound {
 class TinDecimation {
  public:
   // `in_plan`: the shape of faces counts in x and y alone, and the heights of new vertices are free.
-  TinDecimation(TinMesh& mesh, TinOutline& outline, Containment& containment, bool in_plan);
+  TinDecimation(TinMesh& mesh, TinLines& lines, Containment& containment, bool in_plan);
 
   // Tries all edges that have changed since they were tried, until it is enough. How many faces went.
   // Advances `progress` by `share`.
@@ -47,6 +47,7 @@ class TinDecimation {
   void push(std::int32_t a, std::int32_t b);
   bool try_edge(std::int32_t a, std::int32_t b);
   void look_around(std::int32_t a, std::int32_t b);
+  bool between_lines(std::int32_t a, std::int32_t b) const;  // no end is inside
   bool topology_stays() const;
   // Tests all, and makes it when it may be.
   bool make_if_allowed(Collapse);
@@ -58,7 +59,7 @@ class TinDecimation {
   std::array<Xyz, 3> corners(std::int32_t face) const;
 
   TinMesh& mesh_;
-  TinOutline& outline_;
+  TinLines& lines_;
   Containment& containment_;
   bool in_plan_;
   std::vector<TinQuadric> quadrics_;    // of each vertex, seen from it

@@ -45,6 +45,14 @@ void TinMesh::collapse(std::int32_t gone, std::int32_t kept, const Xyz& to) {
   drop_dead(kept);
 }
 
+bool TinMesh::is_edge(std::int32_t a, std::int32_t b) const {
+  bool found = false;
+  for_each_face(a, [&](std::int32_t f, std::int32_t) {
+    found = found || std::find(face(f).begin(), face(f).end(), b) != face(f).end();
+  });
+  return found;
+}
+
 void TinMesh::drop_dead(std::int32_t vertex) {
   std::int32_t* link = &first_[at(vertex)];
   while (*link != kGone) {

@@ -31,6 +31,7 @@ class TinMesh {
   void for_each_face(std::int32_t vertex, const F& f) const {
     for (std::int32_t c = first_[at(vertex)]; c != kGone; c = next_[at(c)]) f(c / 3, c % 3);
   }
+  bool is_edge(std::int32_t a, std::int32_t b) const;
   bool has_faces(std::int32_t vertex) const { return first_[at(vertex)] != kGone; }
 
   // Draws two neighbours together at a place: `gone` goes, and with it the faces of both.

@@ -13,7 +13,7 @@ from .. import parameters as blocks
 from ..error_block import check_error_block, read_error_block
 from ..errors import core_errors
 from ..feedback import Progress
-from ..places_on_tin import distances_from, read_features, vertices_in
+from ..places_on_tin import distances_from, lines_of, read_features, read_lines, vertices_in
 from ..rasters import read_raster
 from ..text import tr
 from ..tins import open_mesh, open_tin, open_tin_file, read_mesh, read_tin_file, read_tin_layer, tin_layer
@@ -43,6 +43,8 @@ class SimplifyTin(TinMaker):
         polygon = [QgsProcessing.SourceType.TypeVectorPolygon]
         keep = QgsProcessingParameterFeatureSource("KEEP", tr("Areas to keep at full resolution"), polygon, None, True)
         file = QgsProcessingParameterFile("FILE", tr("File of a TIN: PLY, OBJ, 2DM, LandXML, ..."), optional=True)
+        line = [QgsProcessing.SourceType.TypeVectorLine]
+        lines = QgsProcessingParameterFeatureSource("BREAK_LINES", tr("Break lines: edges along them stay"), line, None, True)
         field = QgsProcessingParameterString("TOLERANCE_FIELD", tr("Tolerance as an attribute of the vertices"), None, False, True)
         for parameter in (
             [
@@ -58,6 +60,8 @@ class SimplifyTin(TinMaker):
             + self.focus_parameters()
             + [
                 blocks.advanced(blocks.metres("BORDER_TOLERANCE", tr("How far the outline may move (empty: chosen)"))),
+                blocks.advanced(lines),
+                blocks.advanced(blocks.metres("BREAK_LINE_TOLERANCE", tr("How far break lines may move"), 0.0)),
                 blocks.advanced(keep),
             ]
             + self.target_parameters()
@@ -89,6 +93,7 @@ class SimplifyTin(TinMaker):
         self.file = read_tin_file(self, parameters, "FILE", context)
         self.error = read_error_block(self, parameters, context, feedback, self.mesh or self.layer)
         self.raster = read_raster(self, parameters, "TOLERANCE_RASTER", context, feedback)
+        self.lines = read_lines(self, parameters, "BREAK_LINES", context, feedback)
         self.keep, self.focus = (read_features(self, parameters, name, context, feedback) for name in ("KEEP", "FOCUS"))
 
     def compute(self, sightbound, parameters, context, feedback):
@@ -100,6 +105,8 @@ class SimplifyTin(TinMaker):
             error_model=self._model(sightbound) if tolerance is None else None,
             confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
             border_tolerance=number_or_none(self, parameters, "BORDER_TOLERANCE", context),
+            break_lines=lines_of(self.lines, original),
+            break_line_tolerance=number_or_none(self, parameters, "BREAK_LINE_TOLERANCE", context) or 0.0,
             keep=vertices_in(self.keep, original, feedback),
             **self.target(parameters, context),
             voxel_size=number_or_none(self, parameters, "VOXEL", context),

@@ -208,6 +208,63 @@ def test_the_file_has_the_size_asked_for_or_a_warning_tells(body, points, tmp_pa
     assert f"target_faces is 7, but {missed['faces_after']} are left: the tolerance lets no more triangles go." in missed["warnings"]
 
 
+def edges_near(tin, line, reach):
+    """Edges of a TIN all of whose places (a net of them) lie near a polyline, [n, 2, 3]."""
+    ends = tin.vertices[edges_of(tin.faces)]
+    near = np.ones(len(ends), bool)
+    for t in np.linspace(0, 1, 21):
+        near &= from_line(ends[:, 0] + t * (ends[:, 1] - ends[:, 0]), line) <= reach
+    return ends[near]
+
+
+def from_line(places, line):
+    best = np.full(len(places), np.inf)
+    for a, b in zip(line, line[1:]):
+        t = np.clip((places - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
+        best = np.minimum(best, np.linalg.norm(a + t[:, None] * (b - a) - places, axis=1))
+    return best
+
+
+@pytest.mark.parametrize("reach", [0.0, 0.3])
+def test_edges_still_run_along_break_lines(reach):
+    vertices, faces = building()
+    line = vertices[np.arange(57) + 12 * 57]  # across the roof and down its walls
+    original = sb.Tin(vertices, faces)
+    made = sb.simplify(original, tolerance=0.5, break_lines=[line], break_line_tolerance=reach)
+    near = edges_near(made, line, reach + 1e-9)
+    places = np.concatenate([line[:-1] + t * np.diff(line, axis=0) for t in np.linspace(0, 1, 11)])
+    gaps = np.min([from_line(places, edge) for edge in near], axis=0)
+    assert gaps.max() <= reach + 1e-9
+    free = sb.simplify(original, tolerance=0.5)
+    assert len(free.faces) < len(made.faces) < 0.5 * len(original.faces)
+    far = distances(places_on(made.vertices, made.faces), original.vertices, original.faces)
+    assert far.max() <= 0.5
+
+
+def test_break_lines_of_a_triangulation_stay(points):
+    lines = [np.array([[500040, 5000040, 5.0], [500150, 5000160, 9.0], [500260, 5000030, 2.0]]),
+             np.array([[500030, 5000140, 5.0], [500280, 5000100, 5.0]])]
+    original = sb.Tin.from_points(points, breaklines=lines)
+    made = sb.simplify(original, tolerance=1.5, break_lines=[line[:, :2] for line in lines])
+    for line in lines:
+        flat = sb.Tin(made.vertices * [1, 1, 0], made.faces)
+        near = edges_near(flat, line * [1, 1, 0], 1e-6)
+        places = np.concatenate([line[:-1] + t * np.diff(line, axis=0) for t in np.linspace(0, 1, 101)]) * [1, 1, 0]
+        assert np.min([from_line(places, edge) for edge in near], axis=0).max() <= 1e-6
+    assert sb.verify(original, made, 1.5).within_tolerance and len(made.faces) < 0.3 * len(original.faces)
+
+
+@pytest.mark.parametrize("lines, message", [
+    ([[[0, 0, 0], [1, 1, 1]]], "break_lines has 1 pieces, of which 1 do not run along edges"),
+    ([[[0, 0], [1, 1]]], "break_lines has a vertex without height"),
+    ([[0, 1]], "line 1 of break_lines has shape"),
+    (["here"], "line 1 of break_lines must be"),
+])
+def test_break_lines_that_are_none_are_refused(body, lines, message):
+    with pytest.raises(ValueError, match=message):
+        sb.simplify(sb.Tin(*body), tolerance=0.5, break_lines=lines)
+
+
 def test_same_bytes_for_any_number_of_threads(body, tmp_path):
     files = []
     for threads in (1, 2):

@@ -199,6 +199,37 @@ def test_targets_borders_and_areas_to_keep(run, mesh, tmp_path):
     assert simplify(run, mesh, tmp_path, KEEP=areas)["TRIANGLES"] > 1.2 * plain
 
 
+def write_lines(path, lines):
+    source = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
+    layer = source.CreateLayer("lines", scenes.reference(scenes.UTM), ogr.wkbLineString25D)
+    for line in lines:
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(f"LINESTRING Z ({', '.join(' '.join(map(repr, p)) for p in line)})"))
+        layer.CreateFeature(feature)
+    source = None
+    return str(path)
+
+
+def test_edges_stay_along_break_lines(run, mesh, tmp_path):
+    import sightbound
+
+    tin = sightbound.read_tin(mesh)
+    there = tin.vertices.tolist()
+    start = (scenes.WEST + 20 - 9 * math.cos(-0.3), scenes.NORTH - 60)  # a foot of the tunnel, all along
+    foot = sorted((v for v in there if abs(v[0] - start[0]) < 1e-6), key=lambda v: v[1])
+    rib = [v for v in there if abs(v[1] - (scenes.NORTH - 60 + 1.5 * 12)) < 1e-6]
+    plain = simplify(run, mesh, tmp_path)["TRIANGLES"]
+    kept = simplify(run, mesh, tmp_path, BREAK_LINES=write_lines(tmp_path / "rib.gpkg", [rib]))
+    assert kept["TRIANGLES"] > plain and set(map(tuple, rib)) <= set(map(tuple, vertices(kept["OUTPUT"])))
+    loose = simplify(
+        run, mesh, tmp_path, BREAK_LINES=write_lines(tmp_path / "rib.gpkg", [rib]), BREAK_LINE_TOLERANCE=0.3
+    )
+    assert plain <= loose["TRIANGLES"] < kept["TRIANGLES"]
+    beside = [(x, y, z + 0.5) for x, y, z in rib]
+    with pytest.raises(QgsProcessingException, match="BREAK_LINES has 30 pieces, of which 30 do not run along"):
+        simplify(run, mesh, tmp_path, BREAK_LINES=write_lines(tmp_path / "beside.gpkg", [beside]))
+
+
 def square(path, x, y, side):
     source = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
     layer = source.CreateLayer("keep", scenes.reference(scenes.UTM), ogr.wkbPolygon)
