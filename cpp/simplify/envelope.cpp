@@ -112,7 +112,7 @@ Deviation largest(const Original& original, const std::array<Point, 3>& corner) 
     original.for_crossings<kVarying>(
         a, b, [&](const Original::Local& here, double t) { add(here, a.z + t * (b.z - a.z)); });
   }
-  const auto& [a, b, c] = corner;
+  const Point &a = corner[0], &b = corner[1], &c = corner[2];
   const double area = area2(a, b, c);
   Original::for_samples(a, b, c, [&](int row, int begin, int end) {
     for (int x = begin; x < end; ++x) {
