@@ -61,17 +61,18 @@ std::vector<NamedValues> face_values(const Tin& tin, const std::vector<std::stri
   return named(values, taken);
 }
 
-TinFileSize tin_file_size(const std::string& ending, const std::string& crs_wkt, bool deviation) {
+TinFileSize tin_file_size(const std::string& ending, const Tin& like) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();  // of vertices, of faces
   constexpr double kNumber = 25, kIndex = 11;                              // characters, with a blank
+  constexpr double kValue = sizeof(float);
+  const auto of_vertex = static_cast<double>(like.vertex_attributes.size()),
+             of_face = static_cast<double>(like.face_attributes.size());
   if (ending == "ply") {
-    Tin tin;
-    tin.crs_wkt = crs_wkt;
-    if (deviation) tin.face_attributes.push_back({"deviation", {}});
-    return {static_cast<double>(ply_header(tin, kMost, kMost, false).size()), 24, deviation ? 17.0 : 13.0};
+    return {static_cast<double>(ply_header(like, kMost, kMost, false).size()), 24 + kValue * of_vertex,
+            13 + kValue * of_face};
   }
-  if (ending == "nc") return {20000, 24, 16};
-  if (ending == "gpkg") return {150000, 0, 300};  // with its index: 270 measured
+  if (ending == "nc") return {20000, 24 + kValue * of_vertex, 12 + kValue * of_face};
+  if (ending == "gpkg") return {150000, 0, 290 + 10 * of_face};  // with its index: 270 measured with one
   if (ending == "2dm") return {10, 4 + kIndex + 3 * kNumber, 7 + 4 * kIndex};
   if (ending == "obj") return {1000, 3 + 3 * kNumber, 3 + 3 * kIndex};
   throw InvalidInput("target_bytes is for a file that ends in '" + ending +

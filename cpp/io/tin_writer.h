@@ -22,13 +22,13 @@ struct TinWriteOptions {
   bool ascii = false;
 };
 
-// Bytes that a TIN takes in a file, with the one face attribute "deviation" or without any: exact for binary
-// PLY (but for 20 bytes), not less than it takes for the others.
+// Bytes that a TIN takes in a file: exact for binary PLY (but for 20 bytes), not less than it takes for the
+// others. `like` has its CRS and the names of its attributes.
 struct TinFileSize {
   double fixed = 0, of_vertex = 0, of_face = 0;
 };
 // `ending` as in "ply". Throws InvalidInput for one that is not written.
-TinFileSize tin_file_size(const std::string& ending, const std::string& crs_wkt, bool deviation);
+TinFileSize tin_file_size(const std::string& ending, const Tin& like);
 
 // x and y are those of the CRS, z metres. Returns warnings: what the format cannot hold. A failure leaves
 // nothing and keeps what stood there before. Advances `progress` by 1 per vertex and face. Throws

@@ -103,7 +103,7 @@ DemToTin run_dem_to_tin(const DemSource& source, const ErrorModel& model, const 
   simplify.keep_border = options.keep_border;
   simplify.border_tolerance_m = options.border_tolerance_m;
   simplify.target_faces = options.target.faces;
-  simplify.target_bytes = bytes_for(options.target, source.crs_wkt(), true);
+  simplify.target_bytes = bytes_for(options.target, empty_simplified_tin(horizontal_crs(source.crs_wkt())));
   simplify.threads = options.threads;
   simplify.memory_bytes = options.memory_budget;
   const DemPlace place{source.geotransform().of_window(window), metres_per_unit,

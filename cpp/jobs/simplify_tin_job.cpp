@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/memory_budget.h"
 #include "base/number_text.h"
+#include "io/crs.h"
 #include "jobs/tin_tolerance.h"
 #include "simplify/both_ways.h"
 #include "simplify/break_lines.h"
@@ -158,7 +159,10 @@ SimplifiedAnyTin run_simplify_tin(const Tin& tin, const SimplifyTinJob& job, Pro
   options.break_tolerance_m = job.break_line_tolerance_m;
   options.keep = job.keep;
   options.target_faces = job.target.faces;
-  options.target_bytes = bytes_for(job.target, tin.crs_wkt, report.vertical);
+  Tin like;
+  like.crs_wkt = horizontal_crs(tin.crs_wkt);
+  if (report.vertical) like.face_attributes = {{"deviation", {}}};
+  options.target_bytes = bytes_for(job.target, like);
   TinSimplified made = simplify(tin, std::move(tolerance), job, options, report, progress);
   progress.finish();
   report.faces_before = made.faces_before;

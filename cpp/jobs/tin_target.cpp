@@ -5,14 +5,13 @@
 
 #include "base/error.h"
 #include "base/number_text.h"
-#include "io/crs.h"
 #include "io/tin_writer.h"
 
 namespace sightbound {
 
-SimplifyOptions::Bytes bytes_for(const TinTarget& target, const std::string& crs_wkt, bool deviation) {
+SimplifyOptions::Bytes bytes_for(const TinTarget& target, const Tin& like) {
   if (target.bytes == 0) return {};
-  const TinFileSize size = tin_file_size(target.ending, horizontal_crs(crs_wkt), deviation);
+  const TinFileSize size = tin_file_size(target.ending, like);
   const double most = target.bytes - size.fixed;
   if (!(most > 0) || !std::isfinite(most)) {
     throw InvalidInput("target_bytes is " + number_text(target.bytes) + "; a file that ends in '" +

@@ -17,9 +17,9 @@ struct TinTarget {
   std::string ending = "ply";  // of that file (tin_writer.h)
 };
 
-// What is left for vertices and faces; `deviation`: with that attribute of faces. Nothing without such a
-// target. Throws InvalidInput.
-SimplifyOptions::Bytes bytes_for(const TinTarget&, const std::string& crs_wkt, bool deviation);
+// What is left for vertices and faces; `like` has the CRS and the names of the attributes of what will be
+// written. Nothing without such a target. Throws InvalidInput.
+SimplifyOptions::Bytes bytes_for(const TinTarget&, const Tin& like);
 
 // That the tolerance did not let the target be reached, if it did not.
 void say_what_is_missed(const TinTarget&, const SimplifyOptions::Bytes&, const Tin& made,

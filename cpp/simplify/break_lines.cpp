@@ -23,13 +23,13 @@ struct Piece {
     const Xyz along = to - from;
     return std::clamp(dot(p - from, along) / dot(along, along), 0.0, 1.0);
   }
-  bool passes(const Xyz& p) const { return length(from + part_at(p) * (to - from) - p) <= kOnLine; }
+  bool passes(const Xyz& p) const { return length(from + part_at(p) * (to - from) - p) <= kNearLine; }
   // May it pass a place in the box? (Slabs.)
   bool meets(const Box3& box) const {
     double first = 0, last = 1;
     const auto cut = [&](double start, double end, double low, double high) {
-      low -= kOnLine;
-      high += kOnLine;
+      low -= kNearLine;
+      high += kNearLine;
       if (start == end) return low <= start && start <= high;
       const double a = (low - start) / (end - start), b = (high - start) / (end - start);
       first = std::max(first, std::min(a, b));
@@ -63,7 +63,7 @@ class EdgeFinder {
     std::sort(on.begin(), on.end());
     if (on.size() < 2) return false;
     const auto is_at = [&](std::int32_t v, const Xyz& end) {
-      return length(seen(tin_.vertices[at(v)]) - end) <= kOnLine;
+      return length(seen(tin_.vertices[at(v)]) - end) <= kNearLine;
     };
     if (!is_at(on.front().second, piece.from) || !is_at(on.back().second, piece.to)) return false;
     const std::size_t before = edges.size();
@@ -103,7 +103,7 @@ std::vector<TinEdge> edges_along(const Tin& tin, const std::vector<std::vector<X
     for (std::size_t i = 1; i < line.size(); ++i) {
       progress.check();
       const Piece piece{finder.seen(line[i - 1]), finder.seen(line[i])};
-      if (length(piece.to - piece.from) <= kOnLine) continue;
+      if (length(piece.to - piece.from) <= kNearLine) continue;
       ++pieces;
       if (finder.add(piece, edges)) continue;
       if (missing++ == 0) first = text_of(tin, line[i - 1]) + " to " + text_of(tin, line[i]);

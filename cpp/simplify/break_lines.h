@@ -11,7 +11,7 @@
 namespace sightbound {
 
 // A vertex this near to a line lies on it, metres.
-inline constexpr double kOnLine = 1e-3;
+inline constexpr double kNearLine = 1e-3;
 
 // The edges along polylines, in metres from the Tin's origin; `in_plan` looks at x and y alone. Each piece
 // runs from vertex to vertex along edges, over others that lie on it. Throws InvalidInput: how many pieces

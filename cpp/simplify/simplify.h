@@ -5,9 +5,9 @@
 //   |height of the simplified TIN - height of the original| <= tolerance there,
 // where the original is the regular TIN of a DEM (dem.h) and the tolerance is a constant or linear on each of
 // its triangles. The footprint stays, holes and islands of nodata too (but for what a border tolerance lets
-// go); no triangle is turned over, folded or without area. A tolerance of 0 removes only what is coplanar. All this of coordinates as written, which are
-// doubles (place_rounding.h). The same bytes for any number of threads.
-// Method, and what is certified: docs/algorithms/simplify.md.
+// go); no triangle is turned over, folded or without area. A tolerance of 0 removes only what is coplanar.
+// All this of coordinates as written, which are doubles (place_rounding.h). The same bytes for any number of
+// threads. Method, and what is certified: docs/algorithms/simplify.md.
 #pragma once
 
 #include <cstddef>
@@ -57,7 +57,7 @@ struct SimplifyOptions {
   std::int64_t target_faces = 0;
   struct Bytes {
     double most = 0;
-    double of_vertex = 24, of_face = 17;  // a binary PLY's
+    double of_vertex = 32, of_face = 21;  // a binary PLY's
   } target_bytes;
   // Passes go on as long as one removes this part of the faces left (four at least). Smaller: fewer faces,
   // more time (docs/performance.md).
@@ -82,8 +82,10 @@ struct SimplifyReport {
 };
 
 struct SimplifiedTin {
-  // Faces up. Origin and units as regular_tin() has them (regular_tin.h). Face attribute "deviation": the
-  // largest on that face, metres, rounded up.
+  // Faces up. Origin and units as regular_tin() has them (regular_tin.h). Face attributes: "deviation", the
+  // largest on that face, metres, and "bound_used", the largest of deviation / tolerance there, both rounded
+  // up. Vertex attributes: "tolerance" there, metres, and "deviation_around", the largest of the
+  // faces around it.
   Tin tin;
   SimplifyReport report;
   // Of a hierarchy: the vertex of the next TIN, the coarser one, that each vertex was drawn into. Faces whose
@@ -100,6 +102,9 @@ struct SimplifiedTin {
 // not fit, or is more than 2^29 faces), Cancelled. On rough ground 16 microseconds of processor a sample for
 // a tolerance of 5 m, 60 for 1 m (docs/performance.md). Advances `progress` by 1 in all.
 SimplifiedTin simplify_dem(DemWindows&, const DemPlace&, const SimplifyOptions&, Progress&);
+
+// Without vertices and faces, but with the names of all attributes that a simplified DEM has.
+Tin empty_simplified_tin(const std::string& crs_wkt);
 
 // A hierarchy: one TIN for each factor, within so many times the tolerance, each made from the one before.
 // The factors ascend and begin with 1; no target goes with them.

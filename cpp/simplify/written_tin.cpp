@@ -46,9 +46,35 @@ std::vector<std::int32_t> number_vertices(const PlanMesh& mesh, std::vector<std:
   return number;
 }
 
-// The largest deviation on each triangle, band by band of the rows in which they begin. Returns that of all.
-Deviation find_deviations(const PlanMesh& mesh, Originals& originals, std::vector<float>& metres,
-                          const Workers& workers, Progress& progress) {
+// What a triangle and a vertex are known by, each a number of the TIN's.
+struct Numbers {
+  std::vector<float> deviation, bound_used;               // of faces
+  std::vector<float> vertex_tolerance, deviation_around;  // of vertices
+
+  Numbers(std::size_t faces, std::size_t vertices)
+      : deviation(faces), bound_used(faces), vertex_tolerance(vertices), deviation_around(vertices) {}
+  // A vertex's deviation is the largest of the faces around it.
+  void spread(const std::vector<Face>& faces) {
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      for (const std::int32_t v : faces[f]) {
+        deviation_around[at(v)] = std::max(deviation_around[at(v)], deviation[f]);
+      }
+    }
+  }
+};
+
+// Fills in all but `deviation_around`, band by band of the rows in which triangles begin. Returns the largest
+// deviation of all. The tolerance of a vertex is looked up with the first triangle that has it.
+Deviation measure(const PlanMesh& mesh, const std::vector<std::int32_t>& number, Originals& originals,
+                  Numbers& numbers, const Workers& workers, Progress& progress) {
+  constexpr std::int32_t kNobody = PlanMesh::kNone;
+  std::vector<std::int32_t> first(numbers.vertex_tolerance.size(), kNobody);
+  for (std::int32_t t = 0; at(t) < mesh.triangles(); ++t) {
+    for (std::int32_t corner = 4 * t; corner < 4 * t + 3; ++corner) {
+      std::int32_t& its = first[at(number[at(mesh.vertex(corner))])];
+      if (its == kNobody) its = corner;
+    }
+  }
   constexpr int kBandRows = 256;
   constexpr std::size_t kTogether = 512;
   const int band_rows = originals.tiles_at_once(kBandRows) * kBandRows;
@@ -83,8 +109,15 @@ Deviation find_deviations(const PlanMesh& mesh, Originals& originals, std::vecto
         const Deviation off =
             deviation_of(part.original, mesh.place(mesh.vertex(corner)), mesh.place(mesh.vertex(corner + 1)),
                          mesh.place(mesh.vertex(corner + 2)));
-        metres[at(triangles[i])] = rounded_up(off.metres);
+        numbers.deviation[at(triangles[i])] = rounded_up(off.metres);
+        numbers.bound_used[at(triangles[i])] = rounded_up(off.ratio);
         include(largest_of[n], off);
+        for (std::int32_t c = corner; c < corner + 3; ++c) {
+          const std::int32_t v = mesh.vertex(c), to = number[at(v)];
+          if (first[at(to)] == c)
+            numbers.vertex_tolerance[at(to)] =
+                static_cast<float>(part.original.tolerance_under(mesh.place(v)));
+        }
       }
     });
     for (const Deviation& one : largest_of) include(largest, one);
@@ -94,13 +127,21 @@ Deviation find_deviations(const PlanMesh& mesh, Originals& originals, std::vecto
 
 }  // namespace
 
+Tin empty_simplified_tin(const std::string& crs_wkt) {
+  Tin tin;
+  tin.crs_wkt = crs_wkt;
+  tin.vertex_attributes = {{"tolerance", {}}, {"deviation_around", {}}};
+  tin.face_attributes = {{"deviation", {}}, {"bound_used", {}}};
+  return tin;
+}
+
 WrittenTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals& originals,
                        const Workers& workers, Progress& progress) {
   WrittenTin written;
   SimplifiedTin& result = written.made;
   Tin& tin = result.tin;
   const Geotransform& map = place.geotransform;
-  tin.crs_wkt = place.crs_wkt;
+  tin = empty_simplified_tin(place.crs_wkt);
   tin.metres_per_unit = place.metres_per_unit;
   const Xy middle = map.of_sample(originals.cols() / 2.0, originals.rows() / 2.0);
   tin.origin = {std::round(middle.x), std::round(middle.y), 0};
@@ -125,9 +166,13 @@ WrittenTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals& o
     tin.faces.push_back(mirrored ? Face{a, b, c} : Face{a, c, b});
   }
 
-  TinAttribute deviation{"deviation", std::vector<float>(tin.faces.size())};
-  const Deviation largest = find_deviations(mesh, originals, deviation.values, workers, progress);
-  tin.face_attributes.push_back(std::move(deviation));
+  Numbers numbers(tin.faces.size(), tin.vertices.size());
+  const Deviation largest = measure(mesh, number, originals, numbers, workers, progress);
+  numbers.spread(tin.faces);
+  tin.vertex_attributes[0].values = std::move(numbers.vertex_tolerance);
+  tin.vertex_attributes[1].values = std::move(numbers.deviation_around);
+  tin.face_attributes[0].values = std::move(numbers.deviation);
+  tin.face_attributes[1].values = std::move(numbers.bound_used);
   result.report.faces_after = tin.faces.size();
   result.report.largest_deviation_m = largest.metres;
   result.report.largest_ratio = largest.ratio;

@@ -18,7 +18,7 @@ struct WrittenTin {
   std::vector<std::int32_t> number;  // of each vertex of the mesh in the TIN
 };
 
-// Faces up, with the largest deviation of each; fills in what the report says of them. The mesh is compact.
+// Faces up, with all attributes; fills in what the report says of them. The mesh is compact.
 WrittenTin written_tin(const PlanMesh& mesh, const DemPlace& place, Originals& originals,
                        const Workers& workers, Progress& progress);
 

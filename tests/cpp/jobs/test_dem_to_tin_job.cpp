@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a DEM and its error to a TIN: what the tolerance is, and which ground it covers.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -88,14 +89,16 @@ TEST(DemToTin, ExactSamplesAreToldOf) {
 
 TEST(DemToTin, AnAbsurdHeightIsToldOf) {
   std::vector<float> heights(100, 50.0f);
-  heights[33] = -1e30f;
   const ArrayDem dem({heights.data(), 10, 10, std::numeric_limits<double>::quiet_NaN(), 1, nullptr},
-                     Geotransform({0, 1, 0, 0, 0, -1}), "");
+                     Geotransform({0.1, 0.1, 0, 5e6, 0, -0.1}), "");
   Progress progress;
+  heights[33] = -9e8f;
   const DemToTin made = run_dem_to_tin(dem, error(0.5), {}, progress);
-  bool told = false;
-  for (const std::string& warning : made.warnings) told = told || warning.find("Rounding takes") == 0;
-  EXPECT_TRUE(told);
+  EXPECT_TRUE(std::any_of(made.warnings.begin(), made.warnings.end(),
+                          [](const std::string& warning) { return warning.find("Rounding takes") == 0; }));
+  heights[33] = -1e30f;  // nodata that nobody declared
+  EXPECT_TRUE(
+      says(complaint<InvalidInput>([&] { run_dem_to_tin(dem, error(0.5), {}, progress); }), "nodata"));
 }
 
 TEST(DemToTin, SeveralConfidencesGiveNestedTins) {
