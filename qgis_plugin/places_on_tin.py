@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Features over the vertices of a TIN, seen in plan: which of them they hold, and how far the others are from them."""
+"""Features over a TIN, seen in plan: the vertices of the faces that they touch, and how far vertices are from them."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,9 @@ from qgis.core import (
     QgsCoordinateTransform,
     QgsCsException,
     QgsGeometry,
+    QgsLineString,
     QgsPoint,
+    QgsTriangle,
     QgsUnitTypes,
 )
 
@@ -17,6 +19,8 @@ from .errors import bad_input
 from .feedback import until_cancelled
 from .text import tr
 from .values import given
+
+_MOST_BOXES = 200  # of features that faces are compared with one by one
 
 
 @dataclass
@@ -61,19 +65,43 @@ def lines_of(features, tin):
     return lines
 
 
-def vertices_in(features, tin, feedback):
-    """For each vertex 1 where it lies in a feature, else 0; None without features. Any thread."""
+def vertices_under(features, tin, feedback):
+    """For each vertex 1 where a face around it is touched in plan by a feature, else 0; None without features. Any thread."""
     if features is None:
         return None
     geometry = _over(features, tin)
-    engine, box = _prepared(geometry), geometry.boundingBox()
-    inside = [
-        float(box.contains(x, y) and engine.intersects(QgsPoint(x, y)))
-        for x, y, _ in until_cancelled(tin.vertices.tolist(), feedback)
+    engine = _prepared(geometry)
+    plan, faces = tin.vertices[:, :2], tin.faces
+    candidates = _near(geometry, plan[faces])
+    touched = [
+        face for face in until_cancelled(candidates.tolist(), feedback) if engine.intersects(_shape(plan[faces[face]]))
     ]
-    if not any(inside):
-        raise bad_input(features.name, tr("no vertex lies in its polygons; check its CRS."))
-    return inside
+    if not touched:
+        raise bad_input(features.name, tr("no feature lies on the TIN; check its CRS."))
+    under = numpy.zeros(len(plan))
+    under[faces[touched]] = 1.0
+    return under
+
+
+def _near(geometry, corners):
+    """The faces whose box meets that of a part of the geometry."""
+    boxes = [part.boundingBox() for part in geometry.constParts()]
+    if len(boxes) > _MOST_BOXES:
+        boxes = [geometry.boundingBox()]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    near = numpy.zeros(len(corners), bool)
+    for box in boxes:
+        near |= (low[:, 0] <= box.xMaximum()) & (high[:, 0] >= box.xMinimum()) & (
+            (low[:, 1] <= box.yMaximum()) & (high[:, 1] >= box.yMinimum())
+        )
+    return numpy.flatnonzero(near)
+
+
+def _shape(corners):
+    """A face in plan; an upright one is a line there."""
+    a, b, c = (QgsPoint(x, y) for x, y in corners.tolist())
+    (ux, uy), (vx, vy) = corners[1] - corners[0], corners[2] - corners[0]
+    return QgsTriangle(a, b, c) if ux * vy != uy * vx else QgsLineString([a, b, c, a])
 
 
 def distances_from(features, tin, feedback):

@@ -13,7 +13,8 @@ from .. import parameters as blocks
 from ..error_block import check_error_block, read_error_block
 from ..errors import core_errors
 from ..feedback import Progress
-from ..places_on_tin import distances_from, lines_of, read_features, read_lines, vertices_in
+from ..places_on_dem import places
+from ..places_on_tin import distances_from, lines_of, read_features, read_lines, vertices_under
 from ..rasters import read_raster
 from ..text import tr
 from ..tins import open_mesh, open_tin, open_tin_file, read_mesh, read_tin_file, read_tin_layer, tin_layer
@@ -40,8 +41,6 @@ class SimplifyTin(TinMaker):
     )
 
     def initAlgorithm(self, configuration=None):
-        polygon = [QgsProcessing.SourceType.TypeVectorPolygon]
-        keep = QgsProcessingParameterFeatureSource("KEEP", tr("Areas to keep at full resolution"), polygon, None, True)
         file = QgsProcessingParameterFile("FILE", tr("File of a TIN: PLY, OBJ, 2DM, LandXML, ..."), optional=True)
         line = [QgsProcessing.SourceType.TypeVectorLine]
         lines = QgsProcessingParameterFeatureSource("BREAK_LINES", tr("Break lines: edges along them stay"), line, None, True)
@@ -62,7 +61,7 @@ class SimplifyTin(TinMaker):
                 blocks.advanced(blocks.metres("BORDER_TOLERANCE", tr("How far the outline may move (empty: chosen)"))),
                 blocks.advanced(lines),
                 blocks.advanced(blocks.metres("BREAK_LINE_TOLERANCE", tr("How far break lines may move"), 0.0)),
-                blocks.advanced(keep),
+                blocks.advanced(places("KEEP", tr("Places to keep at full resolution"))),
             ]
             + self.target_parameters()
             + [
@@ -107,7 +106,7 @@ class SimplifyTin(TinMaker):
             border_tolerance=number_or_none(self, parameters, "BORDER_TOLERANCE", context),
             break_lines=lines_of(self.lines, original),
             break_line_tolerance=number_or_none(self, parameters, "BREAK_LINE_TOLERANCE", context) or 0.0,
-            keep=vertices_in(self.keep, original, feedback),
+            keep=vertices_under(self.keep, original, feedback),
             **self.target(parameters, context),
             voxel_size=number_or_none(self, parameters, "VOXEL", context),
             threads=self.threads(parameters, context),

@@ -199,6 +199,32 @@ def test_targets_borders_and_areas_to_keep(run, mesh, tmp_path):
     assert simplify(run, mesh, tmp_path, KEEP=areas)["TRIANGLES"] > 1.2 * plain
 
 
+@pytest.mark.parametrize("wkt", ["POINT ({x} {y})", "LINESTRING ({x} {y}, {x2} {y2})", "POLYGON (({x} {y}, {x2} {y}, {x2} {y2}, {x} {y}))"])
+def test_what_points_lines_and_polygons_touch_is_kept(run, mesh, tmp_path, wkt):
+    import sightbound
+
+    x, y = scenes.WEST + 20.3, scenes.NORTH - 45.2
+    place = ogr.CreateGeometryFromWkt(wkt.format(x=x, y=y, x2=x + 4, y2=y + 7))
+    path = str(tmp_path / "keep.gpkg")
+    source = ogr.GetDriverByName("GPKG").CreateDataSource(path)
+    layer = source.CreateLayer("keep", scenes.reference(scenes.UTM), place.GetGeometryType())
+    feature = ogr.Feature(layer.GetLayerDefn())
+    feature.SetGeometry(place)
+    layer.CreateFeature(feature)
+    source = None
+    tin = sightbound.read_tin(mesh)
+    there = tin.vertices
+    touched = [face for face in tin.faces.tolist() if triangle(there[face]).Intersects(place)]
+    kept = set(map(tuple, vertices(simplify(run, mesh, tmp_path, KEEP=path)["OUTPUT"])))
+    assert touched and all(tuple(there[v]) in kept for face in touched for v in face)
+
+
+def triangle(corners):
+    a, b, c = ((x, y) for x, y, _ in corners)
+    ring = ", ".join(f"{x!r} {y!r}" for x, y in map(lambda p: (float(p[0]), float(p[1])), (a, b, c, a)))
+    return ogr.CreateGeometryFromWkt(f"POLYGON (({ring}))")
+
+
 def write_lines(path, lines):
     source = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
     layer = source.CreateLayer("lines", scenes.reference(scenes.UTM), ogr.wkbLineString25D)
