@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <tuple>
 
 #ifdef _WIN32
 #include <windows.h>
@@ -44,10 +45,14 @@ std::size_t container_limit() {
 }
 
 std::string amount(std::size_t bytes) {
-  constexpr double kMebi = 1024.0 * 1024.0;
-  const double mebi = static_cast<double>(bytes) / kMebi;
+  constexpr double kKibi = 1024, kMebi = 1024 * kKibi, kGibi = 1024 * kMebi;
+  const auto size = static_cast<double>(bytes);
+  const auto [unit, name, digits] = size < kKibi         ? std::tuple(1.0, "bytes", 0)
+                                    : size < 0.1 * kMebi ? std::tuple(kKibi, "KiB", 1)
+                                    : size < kGibi       ? std::tuple(kMebi, "MiB", 1)
+                                                         : std::tuple(kGibi, "GiB", 2);
   char text[32];
-  std::snprintf(text, sizeof(text), mebi < 1024 ? "%.1f MiB" : "%.2f GiB", mebi < 1024 ? mebi : mebi / 1024);
+  std::snprintf(text, sizeof(text), "%.*f %s", digits, size / unit, name);
   return text;
 }
 

@@ -11,6 +11,7 @@
 #include "base/number_text.h"
 #include "io/crs.h"
 #include "jobs/tin_tolerance.h"
+#include "jobs/tin_voxels.h"
 #include "simplify/both_ways.h"
 #include "simplify/break_lines.h"
 #include "simplify/height_containment.h"
@@ -22,9 +23,6 @@
 namespace sightbound {
 
 namespace {
-
-// Of the voxel that just fits into the volume. A surface has the tolerance less about a voxel to move in.
-constexpr double kVoxelShare = 0.5;
 
 // metres; a voxel has 1 mm at least.
 constexpr double kLeastInVoxels = 0.002;
@@ -44,46 +42,37 @@ void tell(const TinTolerance& tolerance, const SimplifyTinJob& job, SimplifyTinR
   }
 }
 
-VolumeOptions volume_options(const Surface& surface, double confidence, const SimplifyTinJob& job) {
-  VolumeOptions options;
-  options.confidence = options.largest_confidence = confidence;
-  options.voxel_m = job.voxel_m;
-  options.threads = job.threads;
-  options.memory_bytes = job.memory_budget;
-  if (options.voxel_m == 0) options.voxel_m = kVoxelShare * choose_voxels(surface, options).voxel_m;
-  return options;
-}
-
 GridContainment grid_of(const Tin& tin, TinTolerance& tolerance, const SimplifyTinJob& job,
                         SimplifyTinReport& report, Progress& progress) {
-  const auto surface = std::make_shared<TinSurface>(tin, std::move(tolerance.error), Metric::kNormal);
-  const VolumeOptions options = volume_options(*surface, tolerance.confidence, job);
   const std::size_t collapses = simplify_tin_memory(tin) + tin.faces.size() * BothWays::kBytesPerFace;
-  MemoryBudget(job.memory_budget)
-      .require(collapses + estimate_need(*surface, options).bytes,
-               "Simplifying " + std::to_string(tin.faces.size()) + " faces with voxels of " +
-                   number_text(options.voxel_m, 3) + " m",
-               "Give a larger voxel_size, or a part of the TIN.");
+  const double wanted = voxel_for(tolerance);
+  const auto surface = std::make_shared<TinSurface>(tin, std::move(tolerance.error), Metric::kNormal);
+  VolumeOptions options;
+  options.confidence = options.largest_confidence = tolerance.confidence;
+  options.threads = job.threads;
+  options.memory_bytes = job.memory_budget;
+  options.voxel_m = job.voxel_m;
+  const MemoryBudget budget(job.memory_budget);
+  if (job.voxel_m == 0) options.voxel_m = affordable_voxel(*surface, wanted, options, budget, collapses);
+  budget.require(collapses + estimate_need(*surface, options).bytes,
+                 "Simplifying " + std::to_string(tin.faces.size()) + " faces with voxels of " +
+                     number_text(options.voxel_m, 3) + " m",
+                 "Give a larger voxel, or a part of the TIN.");
   CoverMasks covers = build_covers(surface, options.confidence, options, progress);
   report.voxel_m = covers.voxel_m;
   const HeldFaces held = count_held(*surface, {covers.voxel_m, covers.voxel_height_m}, options.confidence);
   report.faces_not_held = held.not_held;
-  if (held.not_held > 0) {
-    report.warnings.push_back(std::to_string(held.not_held) + " of " + std::to_string(held.faces) +
-                              " faces are too well known for voxels of " + number_text(covers.voxel_m, 3) +
-                              " m: little of the tolerance can be used there.");
-  }
+  if (held.not_held > 0)
+    report.warnings.push_back(too_coarse(held, covers.voxel_m, wanted, job.voxel_m == 0));
   return {PermissionGrid(std::move(covers.inner), covers.voxel_m, covers.voxel_height_m),
           tin.vertices.front() - surface->vertex(0)};
 }
 
 bool is_below_all_voxels(const TinTolerance& tolerance, SimplifyTinReport& report) {
   if (tolerance.largest > kLeastInVoxels) return false;
-  if (tolerance.largest > 0) {
-    report.warnings.push_back("No voxel is small enough for a tolerance of " +
-                              number_text(tolerance.largest, 3) + " m (" + number_text(kLeastInVoxels, 2) +
-                              " m is the least): only what is coplanar goes.");
-  }
+  report.warnings.push_back("No voxel is small enough for a tolerance of " +
+                            number_text(tolerance.largest, 3) + " m (more than " +
+                            number_text(kLeastInVoxels, 2) + " m would do): only what is coplanar goes.");
   return true;
 }
 
@@ -122,16 +111,18 @@ std::vector<TinEdge> break_edges(const Tin& tin, const SimplifyTinJob& job, bool
 
 TinSimplified simplify(const Tin& tin, TinTolerance tolerance, const SimplifyTinJob& job,
                        const TinSimplifyOptions& options, SimplifyTinReport& report, Progress& progress) {
+  if (tolerance.largest == 0 || (!report.vertical && is_below_all_voxels(tolerance, report))) {
+    NothingContained nothing;
+    progress.begin(1, 1);
+    TinSimplified made = simplify_tin(tin, nothing, options, progress);
+    if (report.vertical) made.largest_deviation_m = 0;
+    return made;
+  }
   if (report.vertical) {
     MemoryBudget(job.memory_budget)
         .require(simplify_tin_memory(tin) + tin.faces.size() * HeightContainment::kBytesPerFace,
                  "Simplifying " + std::to_string(tin.faces.size()) + " faces", "Give a part of the TIN.");
     return simplify_height_field(tin, tolerance.metres, options, report, progress);
-  }
-  if (is_below_all_voxels(tolerance, report)) {
-    NothingContained nothing;
-    progress.begin(1, 1);
-    return simplify_tin(tin, nothing, options, progress);
   }
   progress.begin(0.5, 1);
   GridContainment grid = grid_of(tin, tolerance, job, report, progress);

@@ -15,7 +15,7 @@ namespace sightbound {
 
 namespace {
 
-constexpr std::size_t kBytesPerFace = 60, kBytesPerVertex = 160, kBytesPerEdgeQueued = 80;
+constexpr std::size_t kBytesPerFace = 72, kBytesPerVertex = 160, kBytesPerEdgeQueued = 80;
 constexpr double kLeastGain = 0.01;  // passes go on as long as one removes this part of the faces left
 constexpr std::size_t kMostPasses = 12;
 

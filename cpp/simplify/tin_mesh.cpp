@@ -10,11 +10,16 @@ TinMesh::TinMesh(const Tin& tin)
       faces_(tin.faces),
       first_(tin.vertices.size(), kGone),
       next_(3 * tin.faces.size(), kGone),
+      previous_(3 * tin.faces.size(), kGone),
+      around_(tin.vertices.size()),
       alive_(tin.faces.size()) {
   for (std::int32_t c = 3 * faces() - 1; c >= 0; --c) {  // lists then run upward
-    std::int32_t& first = first_[at(faces_[at(c / 3)][at(c % 3)])];
+    const std::int32_t v = faces_[at(c / 3)][at(c % 3)];
+    std::int32_t& first = first_[at(v)];
     next_[at(c)] = first;
+    if (first != kGone) previous_[at(first)] = c;
     first = c;
+    ++around_[at(v)];
   }
   for (std::int32_t v = 0; v < vertices(); ++v) used_ += has_faces(v);
 }
@@ -23,26 +28,32 @@ void TinMesh::collapse(std::int32_t gone, std::int32_t kept, const Xyz& to) {
   places_[at(kept)] = to;
   --used_;
   std::int32_t last = kGone;
-  for (std::int32_t c = first_[at(gone)]; c != kGone; c = next_[at(c)]) {
+  for (std::int32_t c = first_[at(gone)], next; c != kGone; c = next) {
+    next = next_[at(c)];
     Face& face = faces_[at(c / 3)];
-    last = c;
     if (std::find(face.begin(), face.end(), kept) == face.end()) {
       face[at(c % 3)] = kept;
+      last = c;
       continue;
     }
     --alive_;
-    const Face dead = face;
+    for (std::int32_t i = 0; i < 3; ++i) unlink(3 * (c / 3) + i, face[at(i)]);
     face[0] = kGone;
-    for (const std::int32_t v : dead) {
-      if (v != gone && v != kept) drop_dead(v);
-    }
   }
-  if (last != kGone) {
-    next_[at(last)] = first_[at(kept)];
-    first_[at(kept)] = first_[at(gone)];
-  }
+  if (last == kGone) return;
+  next_[at(last)] = first_[at(kept)];
+  if (first_[at(kept)] != kGone) previous_[at(first_[at(kept)])] = last;
+  first_[at(kept)] = first_[at(gone)];
+  around_[at(kept)] += around_[at(gone)];
   first_[at(gone)] = kGone;
-  drop_dead(kept);
+  around_[at(gone)] = 0;
+}
+
+void TinMesh::unlink(std::int32_t corner, std::int32_t vertex) {
+  const std::int32_t before = previous_[at(corner)], after = next_[at(corner)];
+  (before == kGone ? first_[at(vertex)] : next_[at(before)]) = after;
+  if (after != kGone) previous_[at(after)] = before;
+  --around_[at(vertex)];
 }
 
 bool TinMesh::is_edge(std::int32_t a, std::int32_t b) const {
@@ -51,18 +62,6 @@ bool TinMesh::is_edge(std::int32_t a, std::int32_t b) const {
     found = found || std::find(face(f).begin(), face(f).end(), b) != face(f).end();
   });
   return found;
-}
-
-void TinMesh::drop_dead(std::int32_t vertex) {
-  std::int32_t* link = &first_[at(vertex)];
-  while (*link != kGone) {
-    std::int32_t& next = next_[at(*link)];
-    if (alive(*link / 3)) {
-      link = &next;
-    } else {
-      *link = next;
-    }
-  }
 }
 
 }  // namespace sightbound

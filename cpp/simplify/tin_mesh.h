@@ -2,7 +2,7 @@
 // A triangle mesh in space that shrinks in place: faces, and for each vertex a list of the corners there.
 //
 // Any faces, non-manifold ones too: nothing here asks how they lie. Corner 3 f + i is corner i of face f.
-// 24 bytes a face besides vertices.
+// 36 bytes a face besides vertices.
 #pragma once
 
 #include <cstddef>
@@ -34,18 +34,21 @@ class TinMesh {
   bool is_edge(std::int32_t a, std::int32_t b) const;
   bool has_faces(std::int32_t vertex) const { return first_[at(vertex)] != kGone; }
 
-  // Draws two neighbours together at a place: `gone` goes, and with it the faces of both.
+  std::int32_t faces_around(std::int32_t vertex) const { return around_[at(vertex)]; }
+
+  // Draws two neighbours together at a place: `gone` goes, and with it the faces of both. O(faces of `gone`).
   void collapse(std::int32_t gone, std::int32_t kept, const Xyz& to);
 
  private:
   static constexpr std::int32_t kGone = -1;
   static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-  void drop_dead(std::int32_t vertex);
+  void unlink(std::int32_t corner, std::int32_t vertex);
 
   std::vector<Xyz> places_;
   std::vector<Face> faces_;
-  std::vector<std::int32_t> first_, next_;  // corners
-  std::size_t alive_ = 0, used_ = 0;        // faces, vertices with faces
+  std::vector<std::int32_t> first_, next_, previous_;  // corners
+  std::vector<std::int32_t> around_;                   // faces at each vertex
+  std::size_t alive_ = 0, used_ = 0;                   // faces, vertices with faces
 };
 
 }  // namespace sightbound

@@ -20,6 +20,15 @@ TEST(MemoryBudget, AllowsUpToTheBudget) {
   EXPECT_THROW(budget.require(10 * kMebi + 1, "The job", ""), OverBudget);
 }
 
+TEST(MemoryBudget, SmallAmountsAreNotNought) {
+  try {
+    MemoryBudget(20).require(51200, "The job", "");
+    FAIL();
+  } catch (const OverBudget& error) {
+    EXPECT_STREQ(error.what(), "The job needs 50.0 KiB of memory, more than the budget of 20 bytes. ");
+  }
+}
+
 TEST(MemoryBudget, SaysWhatIsNeededAndWhatToDo) {
   try {
     MemoryBudget(10 * kMebi).require(3072 * kMebi, "The viewshed", "Give a shorter max_distance.");

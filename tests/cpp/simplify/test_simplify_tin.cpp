@@ -562,6 +562,27 @@ TEST(SimplifyTin, AnySoupIsRefusedOrSimplifiedSoundly) {
   EXPECT_GT(done, 100U);
 }
 
+// Each took minutes when work at a vertex grew with its faces, and a flat was drawn to one vertex.
+TEST(SimplifyTin, FlatsAndHubsTakeTimeInProportionToTheirFaces) {
+  TinSimplifyOptions options;
+  options.height_field = true;
+  Progress progress;
+  const Tin flat = rough_ground(200, 1, 0);
+  HeightContainment level(flat, std::vector<float>(flat.vertices.size(), 0.1F));
+  EXPECT_EQ(simplify_tin(flat, level, options, progress).tin.faces.size(), 2U);
+  Tin fan;
+  const std::int32_t rim = 20000;
+  fan.vertices.push_back({0, 0, 5});
+  for (std::int32_t i = 0; i < rim; ++i) {
+    const double turn = 2 * 3.141592653589793 * i / rim;
+    fan.vertices.push_back({100 * std::cos(turn), 100 * std::sin(turn), 0});
+    fan.faces.push_back({0, 1 + i, 1 + (i + 1) % rim});
+  }
+  options.outline_tolerance_m = 0.2;
+  HeightContainment cone(fan, std::vector<float>(fan.vertices.size(), 0.2F));
+  EXPECT_LT(simplify_tin(fan, cone, options, progress).tin.faces.size(), 400U);
+}
+
 TEST(SimplifyTin, RefusesWhatMakesNoSense) {
   const Tin tin = triangle();
   TinSimplifyOptions options;
