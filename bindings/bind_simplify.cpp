@@ -61,7 +61,8 @@ py::list dem_to_tin(const std::shared_ptr<DemSource>& dem, const ErrorModel& mod
   py::list levels;
   for (std::size_t n = 0; n < made.levels.size(); ++n) {
     SimplifiedTin& level = made.levels[n];
-    py::dict report("faces_before"_a = level.report.faces_before, "faces_after"_a = level.report.faces_after,
+    py::dict report("method"_a = "vertical", "faces_before"_a = level.report.faces_before,
+                    "faces_after"_a = level.report.faces_after,
                     "largest_deviation"_a = level.report.largest_deviation_m,
                     "largest_ratio"_a = level.report.largest_ratio,
                     "least_tolerance"_a = made.factors[n] * made.least_tolerance_m,

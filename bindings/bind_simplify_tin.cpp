@@ -35,13 +35,14 @@ py::tuple simplify(const std::shared_ptr<RegularTin>& tin, const SimplifyTinJob&
   SimplifiedAnyTin made = ProgressBridge(progress).run(
       [&, used = job](Progress& p) { return run_simplify_tin(tin->tin, used, p); });
   const SimplifyTinReport& found = made.report;
-  py::dict report(
-      "faces_before"_a = found.faces_before, "faces_after"_a = found.faces_after,
-      "method"_a = found.vertical ? "vertical" : "distance", "least_tolerance"_a = found.least_tolerance_m,
-      "largest_tolerance"_a = found.largest_tolerance_m, "largest_deviation"_a = found.largest_deviation_m,
-      "border_tolerance"_a = found.border_tolerance_m, "voxel"_a = found.voxel_m,
-      "faces_not_held"_a = found.faces_not_held, "fixed_vertices"_a = found.fixed_vertices,
-      "error_model"_a = found.error_model, "warnings"_a = found.warnings);
+  py::dict report("faces_before"_a = found.faces_before, "faces_after"_a = found.faces_after,
+                  "method"_a = found.vertical ? "vertical" : "distance",
+                  "least_tolerance"_a = found.least_tolerance_m,
+                  "largest_tolerance"_a = found.largest_tolerance_m,
+                  "largest_deviation"_a = found.largest_deviation_m, "largest_ratio"_a = found.largest_ratio,
+                  "border_tolerance"_a = found.border_tolerance_m, "voxel"_a = found.voxel_m,
+                  "faces_not_held"_a = found.faces_not_held, "fixed_vertices"_a = found.fixed_vertices,
+                  "error_model"_a = found.error_model, "warnings"_a = found.warnings);
   return py::make_tuple(std::make_shared<RegularTin>(RegularTin{std::move(made.tin), {}}), std::move(report));
 }
 

@@ -41,8 +41,8 @@ py::dict to_dict(const VerifyReport& report) {
                   "flipped"_a = to_dict(report.flipped), "folded"_a = to_dict(report.folded),
                   "degenerate"_a = to_dict(report.degenerate), "uncovered"_a = to_dict(report.uncovered),
                   "surplus"_a = to_dict(report.surplus), "uncovered_vertices"_a = report.uncovered_vertices,
-                  "resolution"_a = report.resolution_m, "original_faces"_a = report.original_faces,
-                  "simplified_faces"_a = report.simplified_faces, "pieces"_a = report.pieces,
+                  "resolution"_a = report.resolution_m, "faces_before"_a = report.original_faces,
+                  "faces_after"_a = report.simplified_faces, "pieces"_a = report.pieces,
                   "mean_deviation"_a = report.mean_deviation, "rms_deviation"_a = report.rms_deviation,
                   "histogram"_a = py::dict("low"_a = report.histogram.low, "high"_a = report.histogram.high,
                                            "counts"_a = report.histogram.counts));

@@ -40,7 +40,6 @@ _PARAMETER_OF = {
     "of_vertices": "TOLERANCE_RASTER",
     "target_height_reference": "TARGET_HEIGHT_REFERENCE",
     "voxel_m": "VOXEL",
-    "voxel_size": "VOXEL",
     "break_lines": "BREAK_LINES",
     "break_line_tolerance": "BREAK_LINE_TOLERANCE",
     "border_tolerance": "BORDER_TOLERANCE",

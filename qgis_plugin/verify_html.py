@@ -16,8 +16,8 @@ def write_report(path, report, tolerance):
     parts = [f"<p>{_sentence(report)}</p>", _table(_rows(report, tolerance))]
     if report["histogram"]["counts"]:
         parts.append(f"<h2>{tr('Deviation at the vertices of the original')}</h2>{_histogram(report['histogram'])}")
-    if report["notes"]:
-        notes = "".join(f"<li>{html.escape(note)}</li>" for note in report["notes"])
+    if report["warnings"]:
+        notes = "".join(f"<li>{html.escape(note)}</li>" for note in report["warnings"])
         parts.append(f"<h2>{tr('Repaired when the simplified TIN was read')}</h2><ul>{notes}</ul>")
     path.write_text(page(tr("Verification of a simplified TIN"), parts), encoding="utf-8")
 
@@ -39,7 +39,7 @@ def _rows(report, tolerance):
     deviation, ratio = report["largest_deviation"], report["largest_ratio"]
     vertical = report["method"] == "vertical"
     rows = [
-        (tr("Faces of the original, of the simplified"), f"{report['original_faces']}, {report['simplified_faces']}"),
+        (tr("Faces of the original, of the simplified"), f"{report['faces_before']}, {report['faces_after']}"),
         (tr("Tolerance"), html.escape(tolerance)),
         (tr("Largest deviation (m), certified"), f"{upward(deviation['bound'])} {_at(deviation['place'])}"),
         (tr("Largest deviation / tolerance, certified"), f"{upward(ratio['bound'])} {_at(ratio['place'])}"),

@@ -38,15 +38,13 @@ class SimplifiedTin(Tin):
 
     @property
     def report(self) -> dict[str, Any]:
-        """faces_before, faces_after; least_tolerance, largest_tolerance (metres, at the samples); error_model (JSON of what was
-        used, None with a tolerance); warnings; version.
+        """method ("vertical" or "distance": how the tolerance is measured); faces_before, faces_after; least_tolerance, largest_tolerance
+        (metres, at the samples); largest_deviation (metres) and largest_ratio (of deviation to tolerance), certified: nowhere more, also
+        inside triangles (None by distance, where the tolerance is what is certified); error_model (JSON of what was used, None with a
+        tolerance); warnings; version. verify() uses the same words.
 
-        Of dem_to_tin(): largest_deviation (metres) and largest_ratio (of deviation to tolerance), certified: nowhere more, also
-        inside triangles.
-        Of simplify(): method ("vertical" or "distance": how the tolerance is measured), largest_deviation (as above, and the face
-        attribute too; None by distance, where the tolerance is what is certified), border_tolerance (metres), voxel (metres;
-        0 when the tolerance is too small for any), faces_not_held (of the original, too steep or too well known for the voxels:
-        little goes there), fixed_vertices (where the surface is not manifold)."""
+        Of simplify() also: border_tolerance (metres), voxel (metres; 0 where there are none), faces_not_held (of the original, too well
+        known for the voxels: little goes there), fixed_vertices (where the surface is not manifold)."""
         return self._report
 
     @property
@@ -185,7 +183,7 @@ def simplify(
     target_faces: int | None = None,
     target_bytes: float | None = None,
     target_ending: str = "ply",
-    voxel_size: float | None = None,
+    voxel: float | None = None,
     threads: int | None = None,
     memory_budget: float | None = None,
     progress: Progress | None = None,
@@ -196,7 +194,7 @@ def simplify(
     and at every place of the original that from the result: vertically for height fields, else to the nearest place. Topology stays:
     parts, holes, tunnels. The same bytes for any number of threads.
 
-    Height fields use the whole tolerance. For others it is kept in voxels (of voxel_size), which costs some of it. From a DEM,
+    Height fields use the whole tolerance. For others it is kept in voxels (of voxel), which costs some of it. From a DEM,
     dem_to_tin() is faster and leaves fewer triangles.
 
     Args:
@@ -219,14 +217,14 @@ def simplify(
             may be left: a warning tells. None to remove all that can be.
         target_bytes: instead: stop as soon as the file that `write` makes of the TIN takes no more bytes.
         target_ending: of that file, as for dem_to_tin().
-        voxel_size: metres; smaller voxels keep more of the tolerance, and take more time and memory. None to choose it.
+        voxel: metres; smaller voxels keep more of the tolerance, and take more time and memory. None to choose it.
         threads: for the voxels; None for all cores. The collapses take one.
         memory_budget: bytes; None for three quarters of the memory.
         progress: called with the fraction done, at most ten times a second; False cancels.
 
     Raises:
         ValueError: neither or both of tolerance and error_model, a wrong argument.
-        MemoryError: the job would exceed the memory budget; a larger voxel_size helps.
+        MemoryError: the job would exceed the memory budget; a larger voxel helps.
         Cancelled: progress returned False.
     """
     if (tolerance is None) == (error_model is None):
@@ -245,7 +243,7 @@ def simplify(
     if keep is not None:
         job.set_keep(_kept(keep, core_tin(tin).vertex_count))
     _set_target(job, target_faces, target_bytes, target_ending)
-    job.voxel = optional_length("voxel_size", voxel_size)
+    job.voxel = optional_length("voxel", voxel)
     job.threads = arguments.threads(threads)
     job.memory_budget = arguments.memory_budget(memory_budget)
     made, report = volume_core().simplify_tin(core_tin(tin), job, progress)
@@ -338,7 +336,8 @@ def _as_model(tolerance: Quantity, dem: Dem) -> ErrorModel:
     """An error that is the tolerance: rasters and arrays are then aligned as errors are."""
     value = quantities.from_argument("tolerance", tolerance)
     if hasattr(value, "shape"):
-        _like("tolerance", value, dem)
+        if (_like("tolerance", value, dem) != value).all():
+            raise ValueError("tolerance is NaN at every cell; give metres.")
     if isinstance(value, float) and not 0 <= value <= _LARGEST:
         raise ValueError(f"tolerance is {value:g}; give metres, 0 to {_LARGEST:g}.")
     return ErrorModel(vertical_rmse=tolerance, horizontal_rmse=0, geologic_variation=0)

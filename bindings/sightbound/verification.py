@@ -72,9 +72,9 @@ class Verification:
             the middle of the face with most of it; only of method "vertical"
         uncovered_vertices: of the original
         resolution: no bound is more above the truth than about that, metres
-        original_faces, simplified_faces, pieces (of the overlay, or triangles looked at)
+        faces_before, faces_after (of the original, of the simplified), pieces (of the overlay, or triangles looked at)
         mean_deviation, rms_deviation, histogram (low, high, counts): at the vertices of the original
-        notes: what was repaired when the simplified TIN was read; version
+        warnings: what was repaired when the simplified TIN was read; version
         """
         return self._report
 
@@ -133,7 +133,7 @@ def verify(
         progress,
     )
     made._deviation = deviation.reshape(original.shape) if is_dem else deviation
-    made._report = {**found, "notes": simplified.notes, "version": core.__version__}
+    made._report = {**found, "warnings": simplified.notes, "version": core.__version__}
     return made
 
 

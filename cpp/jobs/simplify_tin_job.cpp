@@ -57,7 +57,7 @@ GridContainment grid_of(const Tin& tin, TinTolerance& tolerance, const SimplifyT
   budget.require(collapses + estimate_need(*surface, options).bytes,
                  "Simplifying " + std::to_string(tin.faces.size()) + " faces with voxels of " +
                      number_text(options.voxel_m, 3) + " m",
-                 "Give a larger voxel, or a part of the TIN.");
+                 "Give a larger voxel_m, or a part of the TIN.");
   CoverMasks covers = build_covers(surface, options.confidence, options, progress);
   report.voxel_m = covers.voxel_m;
   const HeldFaces held = count_held(*surface, {covers.voxel_m, covers.voxel_height_m}, options.confidence);
@@ -115,7 +115,7 @@ TinSimplified simplify(const Tin& tin, TinTolerance tolerance, const SimplifyTin
     NothingContained nothing;
     progress.begin(1, 1);
     TinSimplified made = simplify_tin(tin, nothing, options, progress);
-    if (report.vertical) made.largest_deviation_m = 0;
+    if (report.vertical) made.largest_deviation_m = made.largest_ratio = 0;
     return made;
   }
   if (report.vertical) {
@@ -159,6 +159,7 @@ SimplifiedAnyTin run_simplify_tin(const Tin& tin, const SimplifyTinJob& job, Pro
   report.faces_before = made.faces_before;
   report.faces_after = made.tin.faces.size();
   report.largest_deviation_m = made.largest_deviation_m;
+  report.largest_ratio = made.largest_ratio;
   report.fixed_vertices = made.fixed_vertices;
   say_what_is_missed(job.target, options.target_bytes, made.tin, report.warnings);
   if (made.fixed_vertices > 0) {

@@ -41,7 +41,8 @@ struct SimplifyTinReport {
   std::size_t faces_before = 0, faces_after = 0;
   bool vertical = false;  // how the tolerance is measured
   double least_tolerance_m = 0, largest_tolerance_m = 0;
-  std::optional<double> largest_deviation_m;  // of height fields: certified, nowhere more
+  // Of height fields: certified, nowhere more.
+  std::optional<double> largest_deviation_m, largest_ratio;  // of deviation to tolerance
   double border_tolerance_m = 0;
   double voxel_m = 0;              // 0: no voxel is small enough for the tolerance
   std::size_t faces_not_held = 0;  // too steep or too well known for the voxels: little goes there

@@ -27,6 +27,12 @@ struct StarChange {
   bool free_height = false;  // it may be put higher or lower
 };
 
+// The largest on a face.
+struct FaceDeviation {
+  double metres = 0;  // rounded up
+  double ratio = 0;   // of deviation to tolerance; 0 where both are
+};
+
 class Containment {
  public:
   virtual ~Containment() = default;
@@ -34,8 +40,8 @@ class Containment {
   virtual std::optional<Xyz> place(const StarChange&) = 0;
   // It was made, as it stands, with the new vertex where place() said, or without any change of the surface.
   virtual void made(const StarChange&) {}
-  // The largest deviation of a face as it is now, metres, rounded up; nothing where that is not known.
-  virtual std::optional<double> deviation_of(std::int32_t /*face*/, const std::array<Xyz, 3>&) const {
+  // Of a face as it is now; nothing where that is not known.
+  virtual std::optional<FaceDeviation> deviation_of(std::int32_t /*face*/, const std::array<Xyz, 3>&) const {
     return {};
   }
 };

@@ -151,23 +151,31 @@ void HeightContainment::made(const StarChange& change) {
   }
 }
 
-std::optional<double> HeightContainment::deviation_of(std::int32_t face, const Triangle& now) const {
+// No ratio is more than 1: place() has seen to that, or the surface is as it was, whatever rounding says.
+std::optional<FaceDeviation> HeightContainment::deviation_of(std::int32_t face, const Triangle& now) const {
   const Xyz here = now[0];
   const Flat made(now, here);
   const std::array<Weight, 3> of_new = weights_of(made.at);
-  double most = 0;
+  FaceDeviation most;
   for (const std::int32_t beneath : beneath_[at(face)]) {
     const Flat old(original(beneath), here);
     const std::array<Weight, 3> of_old = weights_of(old.at);
+    const Face& corners = original_.faces[at(beneath)];
     const Piece piece = common_piece(made.at, old.at);
     for (std::size_t c = 0; c < piece.count; ++c) {
-      double off = 0;
-      for (std::size_t i = 0; i < 3; ++i)
-        off += of_new[i](piece.corners[c]) * made.at[i].z - of_old[i](piece.corners[c]) * old.at[i].z;
-      most = std::max(most, std::abs(off));
+      double off = 0, tolerance = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double w = of_old[i](piece.corners[c]);
+        off += of_new[i](piece.corners[c]) * made.at[i].z - w * old.at[i].z;
+        tolerance += w * static_cast<double>(tolerance_[at(corners[i])]);
+      }
+      if (off == 0) continue;
+      const double metres = std::abs(off) + kWrittenSlack;
+      most.metres = std::max(most.metres, metres);
+      if (tolerance > 0) most.ratio = std::max(most.ratio, std::min(metres / tolerance, 1.0));
     }
   }
-  return most == 0 ? 0 : most + kWrittenSlack;
+  return most;
 }
 
 }  // namespace sightbound

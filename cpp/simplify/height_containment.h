@@ -23,7 +23,7 @@ class HeightContainment final : public Containment {
 
   std::optional<Xyz> place(const StarChange&) override;
   void made(const StarChange&) override;
-  std::optional<double> deviation_of(std::int32_t face, const std::array<Xyz, 3>&) const override;
+  std::optional<FaceDeviation> deviation_of(std::int32_t face, const std::array<Xyz, 3>&) const override;
 
   // Bytes a face of the original takes, about.
   static constexpr std::size_t kBytesPerFace = 80;

@@ -73,8 +73,9 @@ void write(const TinMesh& mesh, const Containment& containment, const Tin& origi
     const auto off =
         containment.deviation_of(f, {mesh.place(face[0]), mesh.place(face[1]), mesh.place(face[2])});
     if (off) {
-      deviation.values.push_back(rounded_up(*off));
-      result.largest_deviation_m = std::max(result.largest_deviation_m.value_or(0), *off);
+      deviation.values.push_back(rounded_up(off->metres));
+      result.largest_deviation_m = std::max(result.largest_deviation_m.value_or(0), off->metres);
+      result.largest_ratio = std::max(result.largest_ratio.value_or(0), off->ratio);
     }
     for (std::int32_t& v : face) v = number[static_cast<std::size_t>(v)];
     tin.faces.push_back(face);

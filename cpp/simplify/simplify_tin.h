@@ -45,9 +45,10 @@ struct TinSimplifyOptions {
 
 struct TinSimplified {
   // Without the original's attributes: new vertices have none. Where the containment knows it: face attribute
-  // "deviation", the largest on that face, metres, rounded up.
+  // "deviation", the largest on that face, metres, rounded up; and the largest of all, and of its ratio to
+  // the tolerance.
   Tin tin;
-  std::optional<double> largest_deviation_m;
+  std::optional<double> largest_deviation_m, largest_ratio;
   std::size_t faces_before = 0;
   std::size_t fixed_vertices = 0;  // where the surface is not manifold
 };

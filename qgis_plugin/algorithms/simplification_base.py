@@ -87,9 +87,10 @@ class TinMaker(SimplificationAlgorithm):
         """The numbers of a report, told in the log too."""
         for warning in report["warnings"]:
             feedback.pushWarning(in_our_words(warning))
-        results = {name: report[key] for name, _, key in self.NUMBERS}
+        results = {name: report[key] for name, _, key in self.NUMBERS if report[key] is not None}
         for name, label, _ in self.NUMBERS:
-            feedback.pushInfo(f"{tr(label)}: {results[name]:.6g}")
+            if name in results:
+                feedback.pushInfo(f"{tr(label)}: {results[name]:.6g}")
         if report["error_model"]:
             log_error_model(feedback, report["error_model"])
             results["ERROR_MODEL_USED"] = report["error_model"]

@@ -34,6 +34,8 @@ class SimplifyTin(TinMaker):
     NUMBERS = (
         ("TRIANGLES_BEFORE", "Triangles before", "faces_before"),
         ("TRIANGLES", "Triangles after", "faces_after"),
+        ("LARGEST_DEVIATION", "Largest deviation anywhere, of a height field (m)", "largest_deviation"),
+        ("LARGEST_RATIO", "Largest share of the tolerance that is used, of a height field", "largest_ratio"),
         ("LARGEST_TOLERANCE", "No place is further from the original than (m)", "largest_tolerance"),
         ("BORDER_TOLERANCE_USED", "The outline moves at most (m)", "border_tolerance"),
         ("VOXEL_USED", "Side of the voxels (m)", "voxel"),
@@ -108,7 +110,7 @@ class SimplifyTin(TinMaker):
             break_line_tolerance=number_or_none(self, parameters, "BREAK_LINE_TOLERANCE", context) or 0.0,
             keep=vertices_under(self.keep, original, feedback),
             **self.target(parameters, context),
-            voxel_size=number_or_none(self, parameters, "VOXEL", context),
+            voxel=number_or_none(self, parameters, "VOXEL", context),
             threads=self.threads(parameters, context),
             progress=Progress(feedback, 10.0, 90.0),
         )

@@ -266,6 +266,7 @@ def test_it_can_be_cancelled(dem):
     ({"tolerance": -1.0}, "tolerance is -1"),
     ({"tolerance": float("nan")}, "tolerance"),
     ({"tolerance": np.ones((3, 3))}, "tolerance has shape"),
+    ({"tolerance": np.full((41, 53), np.nan)}, "tolerance is NaN at every cell"),
     ({"tolerance": 1.0, "target_faces": 0}, "target_faces is 0"),
     ({"tolerance": 1.0, "target_bytes": 0}, "target_bytes is 0"),
     ({"tolerance": 1.0, "target_bytes": 100}, "takes more than"),

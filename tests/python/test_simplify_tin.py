@@ -138,6 +138,7 @@ def test_a_tolerance_that_varies_over_a_height_field(points):
     height = np.minimum(tolerance + 1e-4, tolerance.max()).astype("float32")
     assert sb.verify(original, made, height).within_tolerance
     there = {tuple(v) for v in made.vertices.tolist()}
+    assert 0.9 < made.report["largest_ratio"] <= 1 and 3 < made.report["largest_deviation"] <= 4
     exact = tolerance[original.faces].max(axis=1) == 0
     assert all(tuple(v) in there for v in original.vertices[np.unique(original.faces[exact])].tolist())
     assert len(made.faces) < 0.4 * len(original.faces)
@@ -274,6 +275,23 @@ def test_same_bytes_for_any_number_of_threads(body, tmp_path):
     assert files[0] == files[1]
 
 
+def test_reports_speak_with_the_same_words(points):
+    heights = 5 * np.sin(np.arange(900).reshape(30, 30) / 40.0)
+    dem = sb.Dem(heights.astype(np.float32), (0, 10, 0, 300, 0, -10))
+    of_dem = sb.dem_to_tin(dem, tolerance=1.0)
+    original = sb.Tin.from_points(points)
+    of_tin = sb.simplify(original, tolerance=1.0)
+    found = sb.verify(original, of_tin, 1.0).report
+    shared = {"method", "faces_before", "faces_after", "least_tolerance", "largest_tolerance", "largest_deviation", "largest_ratio",
+              "error_model", "warnings", "version"}
+    assert shared == of_dem.report.keys() and shared < of_tin.report.keys()
+    assert shared - found.keys() == {"least_tolerance", "largest_tolerance", "error_model"}
+    for key in ("method", "faces_before", "faces_after", "version"):
+        assert of_tin.report[key] == found[key], key
+    for key in ("largest_deviation", "largest_ratio"):
+        assert found[key]["measured"] <= of_tin.report[key] + 1e-9, key
+
+
 def test_quads_become_triangles():
     vertices = [(x, y, 0.0) for y in range(5) for x in range(5)]
     quads = [(5 * r + c, 5 * r + c + 1, 5 * r + c + 6, 5 * r + c + 5) for r in range(4) for c in range(4)]
@@ -295,7 +313,7 @@ def test_quads_become_triangles():
     ({"tolerance": 1, "target_bytes": 100}, "takes more than"),
     ({"tolerance": 1, "target_bytes": 1e5, "target_faces": 7}, "only one of them"),
     ({"tolerance": 1, "keep": [1, 0]}, "keep has shape"),
-    ({"tolerance": 1, "voxel_size": 0}, "voxel_size"),
+    ({"tolerance": 1, "voxel": 0}, "voxel"),
     ({"error_model": sb.ErrorModel(vertical_rmse=1, geologic_variation=0), "confidence": 1.5}, "confidence"),
     ({"error_model": sb.ErrorModel()}, "geologic_variation"),
 ])
@@ -308,9 +326,46 @@ def test_what_is_wrong_is_named(wrong, message):
         sb.simplify(cave, **wrong)
 
 
+def overhang():
+    """A metre between vertices, centimetres of noise."""
+    rng = np.random.default_rng(6)
+    return tins.sheet(8, 12, lambda u, v: (6 * np.sin(3 * u), 8 * v, 5 * u + rng.normal(0, 0.004, u.shape)))
+
+
+def test_voxels_are_fine_enough_for_centimetres():
+    original = sb.Tin(*overhang())
+    made = sb.simplify(original, tolerance=0.04)
+    assert made.report["voxel"] < 0.04 / np.sqrt(3) and made.report["faces_not_held"] == 0
+    assert len(made.faces) < 0.8 * len(original.faces)
+    far = distances(places_on(made.vertices, made.faces), original.vertices, original.faces)
+    assert far.max() <= 0.04
+
+
+@pytest.mark.parametrize("given", [{"memory_budget": 20e6}, {"voxel": 0.05}])
+def test_voxels_too_coarse_for_the_tolerance_are_told(given):
+    report = sb.simplify(sb.Tin(*overhang()), tolerance=0.04, **given).report
+    told = report["warnings"][-1]
+    assert report["voxel"] > 0.04 / np.sqrt(3) and report["faces_not_held"] == report["faces_before"]
+    assert "too coarse for the tolerance at 192 of 192 faces" in told and "A tolerance of" in told and "or voxel = 0.012" in told
+    assert ("smallest that can be afforded" in told) == ("memory_budget" in given)
+
+
+def test_a_tolerance_below_all_voxels_is_told():
+    report = sb.simplify(sb.Tin(*overhang()), tolerance=0.001).report
+    assert report["voxel"] == 0 and "No voxel is small enough for a tolerance of 0.001 m" in report["warnings"][-1]
+    assert not any("voxel" in told for told in sb.simplify(sb.Tin(*overhang()), tolerance=0).report["warnings"])
+
+
+def test_height_fields_take_the_smallest_tolerance(points):
+    vertices = points.copy()
+    vertices[:, 2] = np.random.default_rng(5).normal(0, 1e-4, len(vertices))
+    made = sb.simplify(sb.Tin.from_points(vertices), tolerance=0.0005)
+    assert made.report["largest_deviation"] <= 0.0005 and made.report["faces_after"] < 0.2 * made.report["faces_before"]
+
+
 def test_too_much_for_the_memory_is_refused_with_advice():
     with pytest.raises(MemoryError, match="voxel"):
-        sb.simplify(sb.Tin(*tins.cave(np.random.default_rng(3))), tolerance=0.5, voxel_size=0.01, memory_budget=50e6)
+        sb.simplify(sb.Tin(*tins.cave(np.random.default_rng(3))), tolerance=0.5, voxel=0.01, memory_budget=50e6)
 
 
 def test_it_is_cancelled_and_tells_its_progress(body):

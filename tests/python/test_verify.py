@@ -42,7 +42,7 @@ def test_a_dem_and_its_tin_are_the_same():
     found = sb.verify(dem, sb.Tin.from_dem(dem), 0.001)
     assert found.within_tolerance and found.well_formed
     assert found.largest_deviation < 1e-7  # coordinates of the CRS are rounded to 1e-9 m, and it is steep here
-    assert found.report["method"] == "vertical" and found.report["original_faces"] == 2 * 20 * 24
+    assert found.report["method"] == "vertical" and found.report["faces_before"] == 2 * 20 * 24
     assert found.vertex_deviation.shape == dem.shape and np.abs(found.vertex_deviation).max() < 1e-8
     assert found.report["uncovered"] == found.report["surplus"] == {"m2": 0.0, "place": None}
 

@@ -50,6 +50,7 @@ def test_mesh_polygons_and_numbers(run, mesh, tmp_path):
     polygons, log = str(tmp_path / "tin.gpkg"), scenes.Log()
     found = simplify(run, mesh, tmp_path, OUTPUT_POLYGONS=polygons, feedback=log)
     assert found["TRIANGLES"] < 0.5 * found["TRIANGLES_BEFORE"] == 0.5 * 2 * 24 * 30
+    assert "LARGEST_DEVIATION" not in found
     assert found["LARGEST_TOLERANCE"] == found["BORDER_TOLERANCE_USED"] == 0.4 and 0 < found["VOXEL_USED"] < 0.4
     made = QgsMeshLayer(found["OUTPUT"], "tin", "mdal")
     assert made.isValid() and made.crs().authid() == "EPSG:32633" and made.meshFaceCount() == found["TRIANGLES"]
@@ -181,6 +182,7 @@ def test_height_fields_lose_nothing_to_voxels(run, dem, tmp_path):
     sightbound.Tin.from_dem(sightbound.read_dem(dem)).write(path)
     found = simplify(run, path, tmp_path, TOLERANCE=1.0)
     assert found["VOXEL_USED"] == 0 and found["TRIANGLES"] < 0.5 * found["TRIANGLES_BEFORE"]
+    assert 0.9 < found["LARGEST_DEVIATION"] <= 1.0 and 0.9 < found["LARGEST_RATIO"] <= 1.0
     verified = run("verifytin", INPUT=dem, SIMPLIFIED=found["OUTPUT"], TOLERANCE=1.0)
     assert verified["WITHIN_TOLERANCE"] and verified["WELL_FORMED"] and 0.9 < verified["LARGEST_DEVIATION"] <= 1.0
 
