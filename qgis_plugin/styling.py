@@ -7,12 +7,16 @@ from pathlib import Path
 from qgis.core import (
     QgsBasicNumericFormat,
     QgsColorRampLegendNodeSettings,
+    QgsColorRampShader,
+    QgsGradientColorRamp,
     QgsMeshDatasetIndex,
     QgsMeshLayer,
+    QgsMeshRendererScalarSettings,
     QgsProcessingLayerPostProcessorInterface,
     QgsRasterLayer,
     QgsSingleBandPseudoColorRenderer,
 )
+from qgis.PyQt.QtGui import QColor
 
 _STYLES = Path(__file__).parent / "styles"
 
@@ -70,8 +74,13 @@ def stretch_ramp(layer, share):
 
 
 def stretch_mesh(layer):
-    """The same for the dataset group that a mesh layer shows; all values are spanned."""
+    """The same for the dataset group that a mesh layer shows; all values are spanned. Its other groups, which a style cannot know,
+    get a ramp from 0 to their largest value, so that each can be shown."""
     settings = layer.rendererSettings()
+    for group in layer.datasetGroupsIndexes():
+        if group != settings.activeScalarDatasetGroup():
+            settings.setScalarSettings(group, _from_zero(layer.datasetGroupMetadata(QgsMeshDatasetIndex(group))))
+    layer.setRendererSettings(settings)
     group = settings.activeScalarDatasetGroup()
     if group < 0:
         return
@@ -85,6 +94,17 @@ def stretch_mesh(layer):
     scalar.setClassificationMinimumMaximum(values.minimum(), values.maximum())
     settings.setScalarSettings(group, scalar)
     layer.setRendererSettings(settings)
+
+
+def _from_zero(values):
+    largest = values.maximum() if values.maximum() > 0.0 else 1.0
+    ramp = QgsGradientColorRamp(QColor(247, 244, 236), QColor(122, 28, 46))
+    shader = QgsColorRampShader(0.0, largest, ramp)
+    shader.classifyColorRamp(5)
+    scalar = QgsMeshRendererScalarSettings()
+    scalar.setColorRampShader(shader)
+    scalar.setClassificationMinimumMaximum(0.0, largest)
+    return scalar
 
 
 def _stretch(shader, least, largest):

@@ -78,8 +78,10 @@ def dem_to_tin(
 
     The original is the surface that viewsheds use: all samples, every square of four split along its NW-SE diagonal. At every
     place, inside triangles as well as at samples, |height of the TIN - height of the original| <= tolerance there. The outline,
-    holes and islands of nodata stay. The same bytes for any number of threads. The face attribute "deviation" is the largest on
-    that face, metres, rounded up.
+    holes and islands of nodata stay. The same bytes for any number of threads.
+
+    Attributes of faces: "deviation", the largest on that face, metres, and "bound_used", the largest deviation / tolerance there, both
+    rounded up. Of vertices: "tolerance", metres, and "deviation_around", the largest of the faces around.
 
     Args:
         dem: as read_dem() returns it, in a projected CRS or none.

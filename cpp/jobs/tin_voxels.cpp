@@ -13,6 +13,7 @@ namespace {
 
 // Of the voxel whose diagonal is the tolerance. A surface has the tolerance less about a voxel to move in.
 constexpr double kVoxelShare = 0.5;
+constexpr double kMayBeLost = 0.01;  // of the vertices that have a tolerance
 constexpr double kSqrt3 = 1.7320508075688772;
 constexpr double kLeastVoxel = 1e-3, kMostVoxel = 1e5;  // metres
 // Of the band: ten seconds or so. Voxels of kFinestShare of the spacing may be more.
@@ -27,10 +28,10 @@ double voxel_for(const TinTolerance& tolerance) {
   std::copy_if(tolerance.metres.begin(), tolerance.metres.end(), std::back_inserter(metres),
                [](float value) { return value > 0; });
   if (metres.empty()) return kLeastVoxel;
-  const auto tenth =
-      metres.begin() + static_cast<std::ptrdiff_t>((1 - kFacesHeld) * static_cast<double>(metres.size() - 1));
-  std::nth_element(metres.begin(), tenth, metres.end());
-  const double side = static_cast<double>(*tenth) / kSqrt3;
+  const auto least =
+      metres.begin() + static_cast<std::ptrdiff_t>(kMayBeLost * static_cast<double>(metres.size() - 1));
+  std::nth_element(metres.begin(), least, metres.end());
+  const double side = static_cast<double>(*least) / kSqrt3;
   return std::clamp(kVoxelShare * std::min(side, tolerance.error.spacing_m), kLeastVoxel, kMostVoxel);
 }
 

@@ -12,7 +12,7 @@
 
 namespace sightbound {
 
-// metres: a part of what just fits into the tolerance at nine vertices of ten that have any.
+// metres: a part of what just fits into the tolerance at 99 of 100 vertices that have any.
 double voxel_for(const TinTolerance&);
 
 // That voxel, or the smallest for which memory and time last: `beside` bytes are taken already.

@@ -105,8 +105,8 @@ class TinMaker(SimplificationAlgorithm):
             path = paths[name] = self.parameterAsFileOutput(parameters, name, context)
             with core_errors(name):
                 warnings = tin.write(path, progress=Progress(feedback, first, first + 5.0))
-            for warning in warnings:
-                feedback.pushWarning(warning)
+            for warning in warnings:  # polygons have no vertices to hold what is known of these
+                (feedback.pushWarning if name == "OUTPUT" else feedback.pushInfo)(warning)
             self._load(path, name, context)
         return paths
 

@@ -126,7 +126,7 @@ def test_a_tolerance_that_varies_holds_at_every_place(body):
     far = distances(places_on(original.vertices, original.faces, 3), made.vertices, made.faces)
     assert (far <= allowed).all()
     assert sb.verify(original, made, tolerance, resolution=0.02).within_tolerance
-    even = sb.simplify(original, tolerance=0.1)
+    even = sb.simplify(original, tolerance=0.1, voxel=made.report["voxel"])
     assert len(made.faces) < len(even.faces)
 
 
