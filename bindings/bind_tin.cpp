@@ -77,9 +77,10 @@ Held from_arrays(const DoubleArray& vertices, const Indices& faces, const std::s
   return make(std::move(source), options_of(crs, vertical_unit), "The TIN", py::none());
 }
 
-Held from_points(const DoubleArray& points, const std::vector<DoubleArray>& breaklines, const std::string& crs,
-                 const std::optional<FloatArray>& sigma_v, const Columns& point_attributes,
-                 double longest_edge, const std::string& vertical_unit, const py::object& progress) {
+Held from_points(const DoubleArray& points, const std::vector<DoubleArray>& breaklines,
+                 const std::string& crs, const std::optional<FloatArray>& sigma_v,
+                 const Columns& point_attributes, double longest_edge, const std::string& vertical_unit,
+                 const py::object& progress) {
   TinSource source;
   source.tin.vertex_attributes = attributes(point_attributes);
   if (sigma_v) source.tin.sigma_v = values(*sigma_v);

@@ -98,8 +98,8 @@ class Run {
   }
 
   LoadedTerrain load(const Window& window) {
-    return LoadedTerrain(source_, georeference_, with_room(window, source_), model_, options_, report_.warnings,
-                         workers_, progress_);
+    return LoadedTerrain(source_, georeference_, with_room(window, source_), model_, options_,
+                         report_.warnings, workers_, progress_);
   }
 
   void view(const Post& post, const LoadedTerrain& terrain) {
