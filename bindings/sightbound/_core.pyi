@@ -330,9 +330,36 @@ class ProbableOptions:
     memory_budget: int
     def __init__(self) -> None: ...
 
+class ProbableViewshed:
+    @property
+    def probability(self) -> _Floats: ...
+    @property
+    def standard_error(self) -> _Floats: ...
+    @property
+    def verdict(self) -> npt.NDArray[np.uint8]: ...
+    @property
+    def geotransform(self) -> tuple[float, ...]: ...
+    @property
+    def crs_wkt(self) -> str: ...
+    def report(self) -> dict[str, Any]: ...
+
+class ProbableFiles:
+    probability: str
+    standard_error: str
+    verdict: str
+    creation_options: list[str]
+    def __init__(self) -> None: ...
+
 def probable_viewshed(
     dem: DemSource, observers: list[Observer], model: ErrorModel, options: ProbableOptions, progress: _Progress | None
-) -> dict[str, Any]: ...
+) -> ProbableViewshed: ...
+def write_probable(
+    result: ProbableViewshed,
+    observers: list[Observer],
+    options: ProbableOptions,
+    files: ProbableFiles,
+    progress: _Progress | None,
+) -> None: ...
 
 class DemToTinOptions:
     error_is_tolerance: bool

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from ._arguments import Box, Limits, Numbers, Positions, Progress, Range, Ranges
+    from ._arguments import Box, CreationOptions, Limits, Numbers, Path, Positions, Progress, Range, Ranges
 
 _DEFAULTS = core.defaults()
 
@@ -25,42 +25,66 @@ _DEFAULTS = core.defaults()
 class ProbableViewshed:
     """Probabilities of being seen; arrays [rows, cols] in the DEM's row order, NaN (verdict 255) where nobody was asked."""
 
-    __slots__ = ("_found",)
+    __slots__ = ("_core", "_observers", "_options", "_report")
 
-    def __init__(self, found: dict[str, Any]) -> None:
-        self._found = found
+    def __init__(
+        self, found: core.ProbableViewshed, observers: list[core.Observer], options: core.ProbableOptions
+    ) -> None:
+        self._core = found
+        self._observers = observers
+        self._options = options
+        self._report = {**found.report(), "version": core.__version__}
 
     @property
     def probability(self) -> npt.NDArray[np.float32]:
         """That an observer sees the cell, 0 to 1."""
-        return self._found["probability"]
+        return self._core.probability
 
     @property
     def standard_error(self) -> npt.NDArray[np.float32]:
         """Of the probability, one standard deviation, for the number of realisations."""
-        return self._found["standard_error"]
+        return self._core.standard_error
 
     @property
     def verdict(self) -> npt.NDArray[np.uint8]:
         """0 hidden, 1 uncertain, 2 visible at the confidence, 255 nobody asked. A claim needs the nearer end of the probability's
         interval of 95 % (Wilson 1927) to hold."""
-        return self._found["verdict"]
+        return self._core.verdict
 
     @property
     def geotransform(self) -> tuple[float, ...]:
         """Six numbers in GDAL's order."""
-        return self._found["geotransform"]
+        return self._core.geotransform
 
     @property
-    def crs_wkt(self) -> str:
-        """WKT of the CRS, '' for none."""
-        return self._found["crs_wkt"]
+    def crs_wkt(self) -> str | None:
+        """The DEM's CRS as WKT; None when there is none."""
+        return self._core.crs_wkt or None
 
     @property
     def report(self) -> dict[str, Any]:
         """observers (x, y, name, ground_height, eye_height: on the DEM), realisations, expected_visible_m2 (the sum of the
         probabilities), visible_m2, uncertain_m2, hidden_m2, error_model (JSON of what was used), warnings, version."""
-        return self._found["report"]
+        return self._report
+
+    def write(
+        self,
+        probability: Path | None = None,
+        standard_error: Path | None = None,
+        verdict: Path | None = None,
+        creation_options: CreationOptions = None,
+        progress: Progress | None = None,
+    ) -> None:
+        """Writes rasters as GeoTIFF, with metadata (SIGHTBOUND_...) that say how they were made: all of them, or none.
+
+        Args and errors as of ViewshedResult.write().
+        """
+        files = core.ProbableFiles()
+        files.probability = arguments.path("probability", probability)
+        files.standard_error = arguments.path("standard_error", standard_error)
+        files.verdict = arguments.path("verdict", verdict)
+        files.creation_options = arguments.creation_options(creation_options)
+        core.write_probable(self._core, self._observers, self._options, files, progress)
 
 
 def probable_viewshed(
@@ -118,5 +142,4 @@ def probable_viewshed(
     options.memory_budget = arguments.memory_budget(memory_budget)
     places = observers_of(observers, names, given)
     found = core.probable_viewshed(core_dem(dem), places, core_model(error_model, dem), options, progress)
-    found["report"]["version"] = core.__version__
-    return ProbableViewshed(found)
+    return ProbableViewshed(found, places, options)

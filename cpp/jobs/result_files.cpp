@@ -120,6 +120,28 @@ void write_viewshed(const ViewshedResult& result, const std::vector<Observer>& o
   outputs.write(result.geotransform, result.crs_wkt, options.threads, progress);
 }
 
+void write_probable(const ProbableViewshed& result, const std::vector<Observer>& observers,
+                    const ProbableOptions& options, const ProbableFiles& files, Progress& progress) {
+  Outputs outputs(with_warnings({{"SIGHTBOUND_VERSION", version()},
+                                 {"SIGHTBOUND_CONFIDENCE", text(options.confidence)},
+                                 {"SIGHTBOUND_ERROR_MODEL", result.report.error_model},
+                                 {"SIGHTBOUND_OBSERVERS", std::to_string(observers.size())},
+                                 {"SIGHTBOUND_OBSERVER_HEIGHT", common(observers, &Observer::height)},
+                                 {"SIGHTBOUND_TARGET_HEIGHT", common(observers, &Observer::target_height)},
+                                 {"SIGHTBOUND_MAX_DISTANCE", common(observers, &Observer::max_distance)},
+                                 {"SIGHTBOUND_CURVATURE", text(options.curvature)},
+                                 {"SIGHTBOUND_REFRACTION", text(options.refraction)},
+                                 {"SIGHTBOUND_REALISATIONS", std::to_string(options.realisations)},
+                                 {"SIGHTBOUND_SEED", std::to_string(options.seed)}},
+                                result.report.warnings),
+                  files.creation_options);
+  outputs.add(files.probability, result.probability,
+              "probability that an observer sees the cell, whole line (conditional simulation)");
+  outputs.add(files.standard_error, result.standard_error, "standard error of the probability");
+  outputs.add(files.verdict, result.verdict, "verdict: 0 hidden, 1 uncertain, 2 visible");
+  outputs.write(result.geotransform, result.crs_wkt, options.threads, progress);
+}
+
 void write_error_surfaces(const ErrorSurfaces& surfaces, const ErrorSurfacesOptions& options,
                           const ErrorSurfaceFiles& files, Progress& progress) {
   Outputs outputs(with_warnings({{"SIGHTBOUND_VERSION", version()},

@@ -11,6 +11,7 @@
 
 #include "base/progress.h"
 #include "jobs/error_surfaces_job.h"
+#include "jobs/probable_viewshed_job.h"
 #include "jobs/viewshed_job.h"
 
 namespace sightbound {
@@ -19,6 +20,10 @@ namespace sightbound {
 struct ViewshedFiles {
   std::string confidence, verdict, count, lowest_visible_height, likely_visible_height;
   std::vector<std::string> creation_options;  // KEY=VALUE, GDAL's for GTiff; empty = tiled and compressed
+};
+struct ProbableFiles {
+  std::string probability, standard_error, verdict;
+  std::vector<std::string> creation_options;
 };
 struct ErrorSurfaceFiles {
   std::string sigma, lower, upper;
@@ -29,6 +34,8 @@ struct ErrorSurfaceFiles {
 // Throws InvalidInput (no path, one path twice, heights that were not computed), IoError, Cancelled.
 void write_viewshed(const ViewshedResult&, const std::vector<Observer>&, const ViewshedOptions&,
                     const ViewshedFiles&, Progress&);
+void write_probable(const ProbableViewshed&, const std::vector<Observer>&, const ProbableOptions&,
+                    const ProbableFiles&, Progress&);
 void write_error_surfaces(const ErrorSurfaces&, const ErrorSurfacesOptions&, const ErrorSurfaceFiles&,
                           Progress&);
 

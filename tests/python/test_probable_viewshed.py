@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from osgeo import osr
+from osgeo import gdal, osr
 
 import sightbound as sb
 
@@ -120,6 +120,18 @@ def test_measurement_error_makes_less_sure(dem):
 def test_wrong_arguments_are_named(dem, arguments, message):
     with pytest.raises(ValueError, match=message):
         sb.probable_viewshed(dem, place(30, 30), **arguments)
+
+
+def test_written_rasters_say_how_they_were_made(dem, tmp_path):
+    found = sb.probable_viewshed(dem, place(30, 30), 5, realisations=32, seed=7)
+    paths = [str(tmp_path / name) for name in ("p.tif", "e.tif", "v.tif")]
+    found.write(*paths)
+    for path, values in zip(paths, (found.probability, found.standard_error, found.verdict)):
+        dataset = gdal.Open(path)
+        assert np.array_equal(dataset.ReadAsArray(), values)
+        assert dataset.GetMetadataItem("SIGHTBOUND_REALISATIONS") == "32" and dataset.GetMetadataItem("SIGHTBOUND_SEED") == "7"
+    with pytest.raises(ValueError, match="nothing to write"):
+        found.write()
 
 
 def test_it_can_be_cancelled(dem):
