@@ -248,7 +248,8 @@ def _height_reference():
     return advanced(choice("HEIGHT_REFERENCE", tr("Heights are above"), words, default("height_reference")))
 
 
-def _earth():
+def earth_block():
+    """How light and ground bend."""
     curvature = QgsProcessingParameterBoolean(
         "CURVATURE", tr("Curvature of the Earth"), default("curvature"), True
     )
@@ -261,7 +262,7 @@ def _earth():
 def volume_sight_block():
     """How sight lines through an error volume are computed, and how many at most."""
     most = number("MOST_LINES", tr("Largest number of lines of sight"), default("most_lines"), 1.0)
-    return [_height_reference(), *_earth(), advanced(most)]
+    return [_height_reference(), *earth_block(), advanced(most)]
 
 
 def hide_height_parameter():
@@ -275,7 +276,7 @@ def sight_block():
         _height_reference(),
         advanced(raster("GROUND", tr("Ground under a surface model, for heights above it"), True)),
         vertical_unit_parameter(),
-        *_earth(),
+        *earth_block(),
         advanced(choice("STAND", tr("Eye and target stand on"), ["model", "ground"], default("stand"))),
         advanced(
             QgsProcessingParameterBoolean(

@@ -12,6 +12,7 @@ from .algorithms.confidence_viewshed import ConfidenceViewshed
 from .algorithms.dem_to_tin import DemToTin
 from .algorithms.error_surfaces import ErrorSurfaces
 from .algorithms.line_of_sight_profile import LineOfSightProfile
+from .algorithms.probable_viewshed import ProbableViewshed
 from .algorithms.simplify_tin import SimplifyTin
 from .algorithms.subtract_observer import SubtractObserver
 from .algorithms.verify_tin import VerifyTin
@@ -22,6 +23,7 @@ from .algorithms.volume_viewshed import VolumeViewshed
 _FOLDER = Path(__file__).parent
 _ALGORITHMS = (
     ConfidenceViewshed,
+    ProbableViewshed,
     ErrorSurfaces,
     LineOfSightProfile,
     BuildErrorVolume,

@@ -10,7 +10,7 @@ from qgis.core import (
     QgsProcessingParameterDefinition,
 )
 
-VISIBILITY = ("confidenceviewshed", "errorsurfaces", "lineofsightprofile")
+VISIBILITY = ("confidenceviewshed", "probableviewshed", "errorsurfaces", "lineofsightprofile")
 VOLUME = ("builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster")
 SIMPLIFICATION = ("demtotin", "simplifytin", "verifytin")
 ALGORITHMS = VISIBILITY + VOLUME + SIMPLIFICATION

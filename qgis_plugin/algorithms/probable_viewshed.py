@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Probable viewshed: in how many of the terrains that could lie behind a DEM is each cell seen?"""
+
+from qgis.core import (
+    QgsProcessingOutputNumber,
+    QgsProcessingOutputString,
+    QgsProcessingParameterRasterDestination,
+)
+
+from .. import observers
+from .. import parameters as blocks
+from ..error_block import check_error_block, log_error_model, read_error_block
+from ..errors import core_errors
+from ..feedback import Progress
+from ..rasters import creation_options, open_dem, read_extent, read_raster
+from ..styling import style_when_loaded
+from ..text import tr
+from ..values import given, number_or_none, word
+from .base import SightboundAlgorithm
+
+# output, label, argument of result.write, style, share of the values that the ramp spans, optional
+RASTERS = (
+    ("OUTPUT", "Probability", "probability", "confidence", 0.0, False),
+    ("OUTPUT_VERDICT", "Verdict", "verdict", "verdict", 0.0, True),
+    ("OUTPUT_ERROR", "Standard error of the probability", "standard_error", "sigma", 1.0, True),
+)
+DRAWS, SEED = 1000, 1  # as of sightbound.probable_viewshed
+NUMBERS = (
+    ("AREA_EXPECTED", "Visible area to be expected (m²)", "expected_visible_m2"),
+    ("AREA_VISIBLE", "Area visible (m²)", "visible_m2"),
+    ("AREA_UNCERTAIN", "Area uncertain (m²)", "uncertain_m2"),
+    ("AREA_HIDDEN", "Area hidden (m²)", "hidden_m2"),
+)
+
+
+class ProbableViewshed(SightboundAlgorithm):
+    NAME = "probableviewshed"
+    TITLE = "Probable viewshed"
+    SUMMARY = "How probable is it that each cell is seen, over the terrains that could lie behind the elevation model?"
+    TAGS = (
+        "viewshed",
+        "visibility",
+        "probability",
+        "probable",
+        "fuzzy",
+        "monte carlo",
+        "simulation",
+        "uncertainty",
+        "error",
+        "observer",
+        "dem",
+        "terrain",
+    )
+
+    def initAlgorithm(self, configuration=None):
+        draws = blocks.number("REALISATIONS", tr("Number of terrains drawn"), DRAWS, 1, 65535, integer=True)
+        seed = blocks.number("SEED", tr("Seed of the draws"), SEED, 0, None, integer=True)
+        for parameter in (
+            blocks.dem_block()
+            + blocks.observers_block()
+            + [blocks.confidence_parameter(), draws]
+            + blocks.error_block()
+            + blocks.limits_block()
+            + [blocks.vertical_unit_parameter(), *blocks.earth_block(), blocks.advanced(seed), blocks.extent_parameter()]
+            + blocks.run_block()
+        ):
+            self.add(parameter)
+        for name, label, _, _, _, optional in RASTERS:
+            self.add(QgsProcessingParameterRasterDestination(name, tr(label)), optional, name != "OUTPUT_ERROR")
+        for name, label, _ in NUMBERS:
+            self.addOutput(QgsProcessingOutputNumber(name, tr(label)))
+        self.addOutput(QgsProcessingOutputString("ERROR_MODEL_USED", tr("Error model used (JSON)")))
+
+    def contradiction(self, parameters, context):
+        return (
+            self.bad_confidence(parameters, context)
+            or observers.check_observers(parameters)
+            or check_error_block(self, parameters, context)
+        )
+
+    def read_input(self, parameters, context, feedback):
+        self.dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
+        self.places, _ = observers.read_observers(self, parameters, context, feedback, self.dem)
+        self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
+        self.error = read_error_block(self, parameters, context, feedback, self.dem)
+        self.extent = read_extent(self, parameters, context, self.dem)
+        self.options = creation_options(self, parameters, context)
+
+    def compute(self, sightbound, parameters, context, feedback):
+        result = sightbound.probable_viewshed(
+            open_dem(sightbound, self.dem, self.vertical_unit, feedback),
+            [(place.x, place.y) for place in self.places],
+            **observers.core_arguments(self.places),
+            error_model=self.error.model(sightbound),
+            confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
+            refraction=self.parameterAsDouble(parameters, "REFRACTION", context),
+            curvature=self.parameterAsBoolean(parameters, "CURVATURE", context),
+            realisations=self._whole(parameters, "REALISATIONS", DRAWS, context),
+            seed=self._whole(parameters, "SEED", SEED, context),
+            extent=self.extent,
+            threads=self.threads(parameters, context),
+            progress=Progress(feedback, 0.0, 95.0),
+        )
+        report = result.report
+        log_error_model(feedback, report["error_model"])
+        for warning in report["warnings"]:
+            feedback.pushWarning(warning)
+        for _, label, key in NUMBERS:
+            feedback.pushInfo(f"{tr(label)}: {report[key]:.6g}")
+        results = self._write(result, parameters, context, feedback)
+        results.update({name: report[key] for name, _, key in NUMBERS})
+        results["ERROR_MODEL_USED"] = report["error_model"]
+        return results
+
+    def _whole(self, parameters, name, default, context):
+        number = number_or_none(self, parameters, name, context)
+        return default if number is None else int(number)
+
+    def _write(self, result, parameters, context, feedback):
+        wanted = [row for row in RASTERS if given(parameters, row[0])]
+        paths = {row[0]: self.parameterAsOutputLayer(parameters, row[0], context) for row in wanted}
+        with core_errors("OUTPUT", {path: name for name, path in paths.items()}):
+            result.write(
+                **{row[2]: paths[row[0]] for row in wanted},
+                creation_options=self.options,
+                progress=Progress(feedback, 95.0, 100.0),
+            )
+        for name, _, _, style, stretch, _ in wanted:
+            style_when_loaded(context, paths[name], style, stretch)
+        return paths
