@@ -81,7 +81,7 @@ TinSimplified simplify_height_field(const Tin& tin, const std::vector<float>& to
                                     const TinSimplifyOptions& options, SimplifyTinReport& report,
                                     Progress& progress) {
   const bool outline_moves = options.outline_tolerance_m > 0;
-  HeightContainment heights(tin, tolerance);
+  HeightContainment heights(tin, tolerance, outline_moves);
   progress.begin(outline_moves ? 0.5 : 1, 1);
   TinSimplified made = simplify_tin(tin, heights, options, progress);
   if (!outline_moves || TinSurface::metric_of(made.tin) == Metric::kVertical) return made;
@@ -90,7 +90,7 @@ TinSimplified simplify_height_field(const Tin& tin, const std::vector<float>& to
   report.border_tolerance_m = 0;
   TinSimplifyOptions still = options;
   still.outline_tolerance_m = 0;
-  HeightContainment again(tin, tolerance);
+  HeightContainment again(tin, tolerance, false);
   progress.begin(0.5, 1);
   return simplify_tin(tin, again, still, progress);
 }

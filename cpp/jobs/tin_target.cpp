@@ -22,7 +22,7 @@ SimplifyOptions::Bytes bytes_for(const TinTarget& target, const Tin& like) {
 
 void say_what_is_missed(const TinTarget& target, const SimplifyOptions::Bytes& bytes, const Tin& made,
                         std::vector<std::string>& warnings) {
-  const std::string why = ": the tolerance lets no more triangles go.";
+  const std::string why = ": nothing more can be removed (tolerance, vertices and lines to keep).";
   const auto faces = static_cast<std::int64_t>(made.faces.size());
   if (target.faces > 0 && faces > target.faces + 1) {
     warnings.push_back("target_faces is " + std::to_string(target.faces) + ", but " + std::to_string(faces) +

@@ -62,9 +62,10 @@ Piece common_piece(const Triangle& a, const Triangle& b) {
 
 }  // namespace
 
-HeightContainment::HeightContainment(const Tin& original, std::vector<float> tolerance)
+HeightContainment::HeightContainment(const Tin& original, std::vector<float> tolerance, bool outline_moves)
     : original_(original), tolerance_(std::move(tolerance)), beneath_(original.faces.size()) {
   for (std::size_t f = 0; f < beneath_.size(); ++f) beneath_[f] = {static_cast<std::int32_t>(f)};
+  if (outline_moves) index_.emplace(original);
 }
 
 HeightContainment::Flat::Flat(const Triangle& t, const Xyz& here) {
@@ -86,7 +87,14 @@ void HeightContainment::gather(const StarChange& change) {
     near_.insert(near_.end(), beneath_[at(face)].begin(), beneath_[at(face)].end());
   };
   for (const std::int32_t face : change.gone) add(face);
-  for (const FaceChange& face : change.changed) add(face.face);
+  for (const FaceChange& face : change.changed) {
+    add(face.face);
+    if (!index_) continue;
+    const auto& [a, b, c] = face.after;
+    index_->for_near({std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), 0},
+                     {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), 0},
+                     [this](std::int32_t near) { near_.push_back(near); });
+  }
   std::sort(near_.begin(), near_.end());
   near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
   flat_.clear();

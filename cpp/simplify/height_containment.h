@@ -5,13 +5,17 @@
 // plan; on each of them new height, original height and tolerance are linear, so that all of it is within the
 // tolerance when its corners are. At each corner the new height is linear in the height of the new vertex: an
 // interval for it, whose middle is taken, since that leaves most to the collapses to come. The footprint of a
-// star stays the same, so the originals under its new faces are those under its old ones.
+// star stays the same, so the originals under its new faces are those under its old ones. Where the outline
+// may move it does not: it may come back over ground that it gave up, and originals are looked up by their
+// place.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "simplify/containment.h"
+#include "simplify/plan_index.h"
 
 namespace sightbound {
 
@@ -19,7 +23,7 @@ class HeightContainment final : public Containment {
  public:
   // metres at each vertex, linear on each face; less kWrittenSlack, which is more than rounding below 1000
   // km. `original` must outlive this and be a height field.
-  HeightContainment(const Tin& original, std::vector<float> tolerance);
+  HeightContainment(const Tin& original, std::vector<float> tolerance, bool outline_moves);
 
   std::optional<Xyz> place(const StarChange&) override;
   void made(const StarChange&) override;
@@ -49,6 +53,7 @@ class HeightContainment final : public Containment {
 
   const Tin& original_;
   std::vector<float> tolerance_;
+  std::optional<PlanIndex> index_;                  // of the originals, where the outline may move
   std::vector<std::vector<std::int32_t>> beneath_;  // originals under each face, ascending
   std::vector<std::int32_t> near_;                  // under the star
   std::vector<Flat> flat_;                          // these, seen from the new vertex

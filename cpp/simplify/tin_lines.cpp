@@ -101,7 +101,9 @@ void TinLines::add_break_lines(const std::vector<TinEdge>& break_lines, Neighbou
       throw InvalidInput("break_lines has the edge " + std::to_string(edge[0]) + " to " +
                          std::to_string(edge[1]) + ", which the TIN has not.");
     }
-    if (!edges_.emplace(key(edge[0], edge[1]), TinEdgeKind::kBreak).second) continue;
+    const auto [there, is_new] = edges_.emplace(key(edge[0], edge[1]), TinEdgeKind::kBreak);
+    if (there->second == TinEdgeKind::kOutline) breaks_of_outline_.insert(there->first);
+    if (!is_new) continue;
     along[edge[0]].push_back(edge[1]);
     along[edge[1]].push_back(edge[0]);
   }
@@ -115,10 +117,20 @@ void TinLines::decide(const NeighboursOf& along) {
       kind = TinVertexKind::kFixed;
       continue;
     }
+    // Along the outline a break line keeps to the tolerances of both; where it begins or ends it stays.
+    const auto breaks =
+        std::count_if(neighbours.begin(), neighbours.end(),
+                      [&, v = vertex](std::int32_t end) { return breaks_of_outline_.contains(key(v, end)); });
+    if (breaks == 1) {
+      kind = TinVertexKind::kFixed;
+      continue;
+    }
     const bool outline = edge(vertex, neighbours[0]) == TinEdgeKind::kOutline;
     kind = outline ? TinVertexKind::kOutline : TinVertexKind::kBreak;
+    double tolerance = outline ? rules_.outline_tolerance_m : rules_.break_tolerance_m;
+    if (breaks == 2) tolerance = std::min(tolerance, rules_.break_tolerance_m);
     const std::array<std::int32_t, 2> both{neighbours[0], neighbours[1]};
-    neighbours_.emplace(vertex, Neighbours{both, both});
+    neighbours_.emplace(vertex, Neighbours{both, both, tolerance});
   }
 }
 
@@ -141,8 +153,7 @@ bool TinLines::may_go(std::int32_t gone, std::int32_t kept) const {
   const std::int32_t other = ends.now[1 - side];
   if (ends.now[side] != kept || other == kept) return false;
   if (edge(other, kept) != TinEdgeKind::kNone) return false;  // two lines would become one
-  const double tolerance =
-      kind(gone) == TinVertexKind::kOutline ? rules_.outline_tolerance_m : rules_.break_tolerance_m;
+  const double tolerance = ends.tolerance;
   if (!near(gone, other, kept, tolerance)) return false;
   if (tolerance == 0) return true;  // what went before lies on the same straight piece
   // What went before, to either side: vertices with two neighbours, so that the way along them is known.

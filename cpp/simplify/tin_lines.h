@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "base/progress.h"
@@ -66,9 +67,10 @@ class TinLines {
   }
 
  private:
-  // Along the line, now and in the original.
+  // Along the line, now and in the original; and how far it may stray there.
   struct Neighbours {
     std::array<std::int32_t, 2> now, original;
+    double tolerance = 0;
   };
   using NeighboursOf = std::unordered_map<std::int32_t, std::vector<std::int32_t>>;
 
@@ -92,6 +94,7 @@ class TinLines {
   std::vector<TinVertexKind> kinds_;
   std::size_t not_manifold_ = 0;
   std::unordered_map<std::uint64_t, TinEdgeKind> edges_;
+  std::unordered_set<std::uint64_t> breaks_of_outline_;      // edges of the outline that are break lines too
   std::unordered_map<std::int32_t, Neighbours> neighbours_;  // of kOutline and kBreak vertices
 };
 

@@ -202,7 +202,7 @@ inline bool try_soup(std::span<const std::uint8_t> bytes) {
   if (!is_height_field(tin)) return true;
   options.height_field = true;
   options.outline_tolerance_m = 0;
-  HeightContainment heights(tin, allowed);
+  HeightContainment heights(tin, allowed, false);
   const TinSimplified within = simplify_tin(tin, heights, options, progress);
   keeps_together(within.tin, tin);
   promise(is_height_field(within.tin), "height fields stay such");

@@ -238,7 +238,7 @@ def test_it_stops_at_a_size_of_the_file(dem, tmp_path, ending):
 def test_a_target_that_the_tolerance_forbids_is_told(dem):
     tin = sb.dem_to_tin(dem, tolerance=0.01, target_faces=9)
     assert tin.report["warnings"] == [
-        f"target_faces is 9, but {len(tin.faces)} are left: the tolerance lets no more triangles go."
+        f"target_faces is 9, but {len(tin.faces)} are left: nothing more can be removed (tolerance, vertices and lines to keep)."
     ]
 
 

@@ -204,9 +204,9 @@ def test_the_file_has_the_size_asked_for_or_a_warning_tells(body, points, tmp_pa
         assert target - 150 < (tmp_path / "made.ply").stat().st_size <= target
         assert not any("target" in warning for warning in made.report["warnings"])
         missed = sb.simplify(original, tolerance=0.01, target_bytes=1500).report
-        assert any("more than target_bytes: the tolerance lets" in warning for warning in missed["warnings"])
+        assert any("more than target_bytes: nothing more" in warning for warning in missed["warnings"])
     missed = sb.simplify(original, tolerance=0.01, target_faces=7).report
-    assert f"target_faces is 7, but {missed['faces_after']} are left: the tolerance lets no more triangles go." in missed["warnings"]
+    assert f"target_faces is 7, but {missed['faces_after']} are left: nothing more can be removed (tolerance, vertices and lines to keep)." in missed["warnings"]
 
 
 def edges_near(tin, line, reach):
@@ -400,3 +400,42 @@ def test_an_outline_that_would_run_over_another_part_stays():
     assert any("outline stays" in warning for warning in simplified.report["warnings"])
     with pytest.raises(ValueError, match="target_faces"):
         sb.simplify(original, tolerance=1.0, target_faces="5")
+
+
+def cut_into_four(vertices, faces):
+    """Every triangle into four: the surface stays the same."""
+    vertices, middles, cut = [np.array(p, float) for p in vertices], {}, []
+    def middle(a, b):
+        edge = min(a, b), max(a, b)
+        if edge not in middles:
+            middles[edge] = len(vertices)
+            vertices.append((vertices[a] + vertices[b]) / 2)
+        return middles[edge]
+    for a, b, c in faces:
+        p, q, r = middle(a, b), middle(b, c), middle(c, a)
+        cut += [[a, p, r], [p, b, q], [r, q, c], [p, q, r]]
+    return vertices, cut
+
+
+def test_an_outline_that_comes_back_over_ground_it_gave_up_keeps_to_it():
+    top = [(9, 7.5, 0), (41, 13, 0), (79, 0.5, 0), (119, 16.5, 11), (163, 17, 0)]
+    middle = [(8, -1.5, 0), (35, -5.5, 0), (74, -5.5, 0), (128, -3, 0), (152, -1.5, 0)]
+    vertices = top + middle + [(40 * n, -40, 0) for n in range(5)]
+    faces = [f for a in range(4) for f in ([a, a + 5, a + 6], [a, a + 6, a + 1])]
+    faces += [f for a in (5, 6) for f in ([a, a + 5, a + 1], [a + 1, a + 5, a + 6])]
+    faces += [f for a in (7, 8) for f in ([a, a + 5, a + 6], [a, a + 6, a + 1])]
+    original = sb.Tin(*cut_into_four(*cut_into_four(vertices, faces)))
+    for border in (10, 12, 15, 20, 30):
+        made = sb.simplify(original, tolerance=2.0, border_tolerance=border)
+        found = sb.verify(original, made, 2.0)
+        assert found.within_tolerance
+        assert made.report["largest_deviation"] >= found.report["largest_deviation"]["measured"] - 1e-6
+
+
+def test_break_lines_along_the_outline_keep_their_own_tolerance():
+    x, top = np.arange(5) * 10.0, np.array([0, 2, 0, 2, 0.0])
+    vertices = np.r_[np.c_[x, top, 0 * x], np.c_[x, 0 * x - 20, 0 * x]]
+    tin = sb.Tin(vertices, [f for i in range(4) for f in ([i, i + 5, i + 6], [i, i + 6, i + 1])])
+    for line, left in ((vertices[:5], vertices[:5]), (vertices[1:4], vertices[1:4])):
+        made = sb.simplify(tin, tolerance=1, border_tolerance=3, break_lines=[line[:, :2]], break_line_tolerance=0)
+        assert {tuple(v) for v in left} <= {tuple(v) for v in made.vertices}

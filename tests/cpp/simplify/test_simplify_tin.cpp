@@ -247,7 +247,7 @@ TEST(SimplifyTin, HeightFieldsKeepTheirFootprintAndLookUp) {
     const Tin tin = rough_ground(16, seed, 1.5);
     TinSimplifyOptions options;
     options.height_field = true;
-    HeightContainment containment(tin, std::vector<float>(tin.vertices.size(), 1.0F));
+    HeightContainment containment(tin, std::vector<float>(tin.vertices.size(), 1.0F), false);
     Progress progress;
     const TinSimplified made = simplify_tin(tin, containment, options, progress);
     EXPECT_LT(made.tin.faces.size(), tin.faces.size() / 2);
@@ -422,7 +422,7 @@ TEST(SimplifyTin, EdgesStillRunAlongBreakLines) {
       options.break_tolerance_m = tolerance;
       Progress progress;
       options.break_lines = edges_along(tin, given, true, progress);
-      HeightContainment containment(tin, std::vector<float>(tin.vertices.size(), 2.0F));
+      HeightContainment containment(tin, std::vector<float>(tin.vertices.size(), 2.0F), false);
       const Tin made = simplify_tin(tin, containment, options, progress).tin;
       expect_sound(made);
       for (const PlanLine& line : lines) expect_edges_along(made, line, tolerance);
@@ -568,7 +568,7 @@ TEST(SimplifyTin, FlatsAndHubsTakeTimeInProportionToTheirFaces) {
   options.height_field = true;
   Progress progress;
   const Tin flat = rough_ground(200, 1, 0);
-  HeightContainment level(flat, std::vector<float>(flat.vertices.size(), 0.1F));
+  HeightContainment level(flat, std::vector<float>(flat.vertices.size(), 0.1F), false);
   EXPECT_EQ(simplify_tin(flat, level, options, progress).tin.faces.size(), 2U);
   Tin fan;
   const std::int32_t rim = 20000;
@@ -579,7 +579,7 @@ TEST(SimplifyTin, FlatsAndHubsTakeTimeInProportionToTheirFaces) {
     fan.faces.push_back({0, 1 + i, 1 + (i + 1) % rim});
   }
   options.outline_tolerance_m = 0.2;
-  HeightContainment cone(fan, std::vector<float>(fan.vertices.size(), 0.2F));
+  HeightContainment cone(fan, std::vector<float>(fan.vertices.size(), 0.2F), false);
   EXPECT_LT(simplify_tin(fan, cone, options, progress).tin.faces.size(), 400U);
 }
 
