@@ -305,6 +305,23 @@ TEST(Lines, S1AndS2HoldWhereOutlinesMove) {
   }
 }
 
+// The ear with the peak goes first; then the outline comes back over it, in the plane of what is left.
+TEST(Lines, S4OutlinesDoNotAdvanceOverGroundThatTheyGaveUp) {
+  const float n = kNan;
+  const std::vector<std::vector<float>> rows{
+      {n, n, n, n}, {100, n, 50, 50}, {50, 50, 50, 50}, {n, 50, 50, 50}};
+  const Grid<float> heights = grid_from(
+      4, 4, [&](int r, int c) { return rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)]; });
+  SimplifyOptions options = within(0);
+  options.border_tolerance_m = 15;
+  const SimplifiedTin made = simplified(terrain_of(heights), options);
+  EXPECT_EQ(made.report.largest_deviation_m, 0);
+  EXPECT_LE(overlay_report(
+                heights, terrain_of(heights).geotransform, [](int, int) { return 0.0; }, made.tin)
+                .deviation,
+            kNoHeight);
+}
+
 TEST(Lines, ChainsOnCornersOfCellsHaveNoGaps) {
   for (const auto& [from, to] : {std::pair{Xy{1.5, 9.5}, Xy{56.5, 9.5}},
                                  {Xy{0.5, 0.5}, Xy{30.5, 30.5}},
