@@ -12,6 +12,7 @@
 #include <string>
 #include <variant>
 
+#include "error_model/tails.h"
 #include "terrain/grid.h"
 
 namespace sightbound {
@@ -41,6 +42,11 @@ enum class GeologicShape {
 std::string name_of(GeologicShape shape);                    // "gaussian", "step", "growth"
 GeologicShape geologic_shape_from(const std::string& name);  // throws InvalidInput
 
+// What a cell of the DEM holds: the height of its middle, or the mean over it.
+enum class CellContent { kSamples, kMeans };
+std::string name_of(CellContent content);                // "samples", "means"
+CellContent cell_content_from(const std::string& name);  // throws InvalidInput
+
 // Polygons that say what lies between the samples; the one under a sample counts, the largest value on
 // overlap.
 struct TerrainTypes {
@@ -62,6 +68,14 @@ struct ErrorModel {
   std::optional<double> growth_exponent;                    // H, for kGrowth
   std::optional<double> typical_m;  // sd half a spacing from a sample, where the local map has no answer
   std::optional<TerrainTypes> terrain_types;
+  std::optional<Tails> tails;     // of all errors in units of sigma; unset = normal
+  double correlation_length = 0;  // metres: measurement errors d apart correlate by exp(-d / length); 0 = not
+  double shared_bias = 0;         // metres, DEM minus truth, the same everywhere; moves absolute heights only
+  std::optional<CellContent> samples_or_means;  // unset = samples
+  std::optional<double> ridge_gain;  // how far the truth stands above the surface, in units of its curvature
+
+  // F and z of every claim.
+  Tails tails_used() const { return tails.value_or(Tails::kNormal); }
 
   // Throws InvalidInput naming field, value and allowed range.
   void validate() const;
