@@ -275,22 +275,23 @@ def smooth_and_rough(side=200):
 
 def test_growth_and_size_are_the_definition_s():
     z = smooth_and_rough()
-    found = sb.estimate_error(sb.Dem(z, UTM_GT, rasters.wkt_of(UTM)))
+    found = sb.estimate_error(sb.Dem(z, UTM_GT, rasters.wkt_of(UTM)), samples_or_means="samples")
     exponent, sd = error_oracle.growth(z)
     assert found.report["growth_exponent"] == pytest.approx(exponent, abs=0.01)
-    assert found.report["typical_sigma"] == pytest.approx(sd, rel=0.1)
+    assert found.report["typical_sigma"] == pytest.approx(sd * found.report["local_scale"], rel=0.1)
     assert found.growth_exponent is None or found.growth_exponent == found.report["growth_exponent"]
 
 
 @pytest.mark.parametrize("south_up", [False, True])
 def test_local_map(south_up):
-    """Measured through the error surfaces: sigma at a cell's corner is the map times sqrt2^H (square cells)."""
+    """Measured through the error surfaces: sigma at a cell's corner, t = sqrt2 (square cells), is the map times
+    t^(min(H, 1) / 2)."""
     z = smooth_and_rough(120)
     gt = (612340.0, 10.0, 0.0, 5538120.0, 0.0, 10.0 if south_up else -10.0)
     dem = sb.Dem(z, gt, rasters.wkt_of(UTM))
-    model = sb.estimate_error(dem)
+    model = sb.estimate_error(dem, samples_or_means="samples")
     exponent = model.report["growth_exponent"]
-    expected = error_oracle.local_variation(z, exponent, anti=south_up) * 2 ** (exponent / 2)
+    expected = error_oracle.local_variation(z, exponent, anti=south_up) * 2 ** (min(exponent, 1) / 4) * model.report["local_scale"]
     sigma = sb.error_surfaces(dem, model).sigma
     inside = np.isfinite(expected)
     # Cells are square to the projection's distortion only.
