@@ -10,21 +10,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-SIGHTBOUND_VECTOR
-void draw(const DrawKey& key, std::uint32_t first, float mean, float spread, Lanes& out) {
-  for (int l = 0; l < kLanes; ++l)
-    out.v[l] = mean + spread * normal_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
-}
-
-SIGHTBOUND_VECTOR
-void draw_between(const DrawKey& key, std::uint32_t first, const Lanes& a, const Lanes& b, float spread,
-                  Lanes& out) {
-  for (int l = 0; l < kLanes; ++l) {
-    const float middle = 0.5f * (a.v[l] + b.v[l]);
-    out.v[l] = middle + spread * normal_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
-  }
-}
-
 // Half of the way from a sample to its neighbour along the row, the column, the diagonal; metres.
 enum Way { kAlongRow, kAlongColumn, kAlongDiagonal };
 double half_way(const CellSize& cell, Way way) {
@@ -34,10 +19,9 @@ double half_way(const CellSize& cell, Way way) {
 
 }  // namespace
 
-RealisedColumns::RealisedColumns(const OpenTerrain& terrain, bool transposed, std::uint32_t first_realisation)
+RealisedColumns::RealisedColumns(const OpenTerrain& terrain, bool transposed)
     : terrain_(terrain),
       transposed_(transposed),
-      first_(first_realisation),
       samples_major_(transposed ? terrain.mean.rows() : terrain.mean.cols()),
       samples_minor_(transposed ? terrain.mean.cols() : terrain.mean.rows()) {
   const GrowthProfile& profile = terrain.error.profile;
@@ -61,45 +45,40 @@ double RealisedColumns::between(int major, int minor) const {
   return amplitude * terrain_.error.profile(half_way(terrain_.error.cell_sizes[at(r)], way), amplitude);
 }
 
-const Lanes* RealisedColumns::samples(Line& line, int major, int from, int to) {
-  if (line.major == major && line.from <= from && to <= line.to) return line.heights.data() - line.from;
-  line.major = major;
-  line.from = from;
-  line.to = to;
-  line.heights.resize(std::max(line.heights.size(), at(to - from + 1)));
-  for (int n = from; n <= to; ++n) {
-    const int row = transposed_ ? major : n, col = transposed_ ? n : major;
-    const float spread = terrain_.spread.at(row, col), mean = terrain_.mean.at(row, col);
-    Lanes& out = line.heights[at(n - from)];
-    if (spread == 0) {
-      std::fill_n(out.v, kLanes, mean);
-    } else {
-      draw(draw_key(terrain_.seed, 2 * (terrain_.row + row), 2 * (terrain_.col + col)), first_, mean, spread,
-           out);
-    }
-  }
-  return line.heights.data() - line.from;
+SampleDraw RealisedColumns::sample(int major, int minor) const {
+  const int row = transposed_ ? major : minor, col = transposed_ ? minor : major;
+  return {draw_key(terrain_.seed, 2 * (terrain_.row + row), 2 * (terrain_.col + col)),
+          terrain_.mean.at(row, col), terrain_.spread.at(row, col)};
 }
 
-const Lanes* RealisedColumns::nodes(int major, int from, int to) {
-  nodes_.resize(std::max(nodes_.size(), at(to - from + 1)));
-  const int low = from / 2, high = (to + 1) / 2;
+NodeDraw RealisedColumns::node(int major, int minor) const {
+  const int row = transposed_ ? major : minor, col = transposed_ ? minor : major;
+  return {draw_key(terrain_.seed, 2 * terrain_.row + row, 2 * terrain_.col + col),
+          static_cast<float>(between(major, minor))};
+}
+
+// At a sample.
+HeightRange RealisedColumns::range(int major, int minor) const {
+  const int row = transposed_ ? major : minor, col = transposed_ ? minor : major;
+  const float mean = terrain_.mean.at(row, col), most = terrain_.largest_draw * terrain_.spread.at(row, col);
+  return {mean - most, mean + most};
+}
+
+void RealisedColumns::ranges(int major, int from, int to, std::vector<HeightRange>& out) const {
+  out.resize(at(to - from + 1));
   const int m = major / 2, next = (major + 1) / 2;
-  // The line of the lower number is kept in its own place, so that neighbouring majors find it again.
-  const Lanes* here = samples(lines_[m % 2], m, low, high);
-  const Lanes* there = next == m ? here : samples(lines_[next % 2], next, low, high);
+  HeightRange a = range(m, from / 2), b = a;
   for (int n = from; n <= to; ++n) {
-    const int k = n / 2, k1 = (n + 1) / 2;
-    Lanes& out = nodes_[at(n - from)];
-    if (k == k1 && m == next) {
-      out = here[k];
-      continue;
+    const bool is_sample = n % 2 == 0 && m == next;
+    if (n % 2 == 0) {
+      a = m == next && n > from ? b : range(m, n / 2);
+      b = m == next ? a : range(next, n / 2);
+    } else {
+      b = range(next, (n + 1) / 2);
     }
-    const int row = transposed_ ? major : n, col = transposed_ ? n : major;
-    draw_between(draw_key(terrain_.seed, 2 * terrain_.row + row, 2 * terrain_.col + col), first_, here[k],
-                 there[k1], static_cast<float>(between(major, n)), out);
+    const float most = is_sample ? 0 : terrain_.largest_draw * static_cast<float>(between(major, n));
+    out[at(n - from)] = {0.5f * (a.low + b.low) - most, 0.5f * (a.high + b.high) + most};
   }
-  return nodes_.data() - from;
 }
 
 }  // namespace sightbound
