@@ -36,6 +36,7 @@ py::dict defaults() {
       "combine"_a = name_of(options.combine), "height_reference"_a = name_of(options.height_reference),
       "see_across_nodata"_a = options.see_across_nodata, "heights"_a = options.heights,
       "horizontal_rmse"_a = model.horizontal_rmse, "geologic_model"_a = name_of(model.geologic_shape),
+      "correlation_length"_a = model.correlation_length, "shared_bias"_a = model.shared_bias,
       "vertical_unit"_a = "auto", "band"_a = 1, "terrain_table"_a = default_terrain_table(),
       "target_spacing"_a = sight.targets.spacing_m, "target_ceiling"_a = sight.targets.ceiling_m,
       "seen_from"_a = name_of(sight.seen_from), "holds_for"_a = name_of(sight.holds_for),

@@ -38,6 +38,13 @@ class ErrorModel:
         terrain_table: class -> metres, as a dict or as the path of a JSON or CSV file; None for terrain_table().
         terrain_layer: the layer of `terrain_types`; None for the first.
         growth_exponent: how fast the doubt grows with distance ("growth" only).
+        tails: how errors are distributed: "normal", "laplace" or "student" (5 degrees of freedom: what real ground
+            shows). None: normal, unless estimated.
+        correlation_length: metres; the measured errors of samples d apart correlate by exp(-d / length). 0: not at all.
+        shared_bias: how much the DEM is too high everywhere, metres. It moves heights that are absolute, nothing else.
+        samples_or_means: what a cell holds: "samples" (the height of its middle) or "means" (the mean over the cell).
+            None or "auto": samples, unless estimated.
+        ridge_gain: how far the truth stands above the surface, in units of its curvature (-2 to 2).
 
     Raises:
         ValueError: a value out of range, or values that contradict each other.
@@ -62,6 +69,11 @@ class ErrorModel:
         terrain_table: Mapping[str, float] | Path | None = None,
         terrain_layer: str | None = None,
         growth_exponent: float | None = None,
+        tails: str | None = None,
+        correlation_length: float = _DEFAULTS["correlation_length"],
+        shared_bias: float = _DEFAULTS["shared_bias"],
+        samples_or_means: str | None = None,
+        ridge_gain: float | None = None,
     ) -> None:
         model = core.ErrorModel()
         self._core, self._arrays, self._report = model, {}, {}
@@ -73,6 +85,14 @@ class ErrorModel:
             model.geologic_range = arguments.number("geologic_range", geologic_range)
         if growth_exponent is not None:
             model.growth_exponent = arguments.number("growth_exponent", growth_exponent)
+        if tails is not None:
+            model.tails = arguments.word("tails", tails)
+        model.correlation_length = arguments.number("correlation_length", correlation_length)
+        model.shared_bias = arguments.number("shared_bias", shared_bias)
+        if samples_or_means not in (None, "auto"):
+            model.samples_or_means = arguments.word("samples_or_means", samples_or_means)
+        if ridge_gain is not None:
+            model.ridge_gain = arguments.number("ridge_gain", ridge_gain)
         if terrain_types is not None:
             types = arguments.path("terrain_types", terrain_types)
             table = quantities.class_table(terrain_table)
@@ -186,6 +206,31 @@ class ErrorModel:
         """class -> metres; None without polygons, or when the default table is used."""
         types = self._core.terrain_types
         return (types.table or None) if types else None
+
+    @property
+    def tails(self) -> str | None:
+        """ "normal", "laplace" or "student"; None counts as normal."""
+        return self._core.tails
+
+    @property
+    def correlation_length(self) -> float:
+        """Metres, of the measured errors."""
+        return self._core.correlation_length
+
+    @property
+    def shared_bias(self) -> float:
+        """Metres by which the DEM is too high everywhere."""
+        return self._core.shared_bias
+
+    @property
+    def samples_or_means(self) -> str | None:
+        """ "samples" or "means"; None counts as samples."""
+        return self._core.samples_or_means
+
+    @property
+    def ridge_gain(self) -> float | None:
+        """How far the truth stands above the surface, in units of its curvature."""
+        return self._core.ridge_gain
 
     @property
     def report(self) -> dict[str, Any]:

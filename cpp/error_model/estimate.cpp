@@ -4,7 +4,8 @@
 //   e_q = z - (z before + z after) / 2, neighbours q away along the row, the column and the NW-SE diagonal
 //
 // H comes from rows and columns alone, at the same places for both q; the diagonal, sqrt2 times as far, joins
-// in afterwards as e / sqrt2^H. The same three residuals make the local map (local_variation.h).
+// in afterwards. The same three residuals make the local map (local_variation.h). Wider spacings tell samples
+// from means (residual_growth.h); tails and scale are what the DEM's own samples show (self_check.h).
 #include "error_model/estimate.h"
 
 #include <algorithm>
@@ -13,7 +14,11 @@
 #include <cstdio>
 #include <limits>
 
+#include "error_model/fractal_surface.h"
+#include "error_model/local_variation.h"
+#include "error_model/residual_growth.h"
 #include "error_model/rounding.h"
+#include "error_model/self_check.h"
 
 namespace sightbound {
 
@@ -23,7 +28,8 @@ constexpr std::size_t kEnough = 1000;  // places; with fewer, further blocks are
 constexpr std::size_t kFewest = 64;    // places that H may be measured on
 constexpr double kUsualExponent = 1;   // bare earth: median 1.0-1.1 of sixteen lidar terrains
 constexpr double kLeastExponent = 0.1, kLargestExponent = 2;
-constexpr float kHighest = 1e5f;  // metres; no height on Earth, but a spike or an undeclared nodata value
+constexpr double kMeansFrom = 0.5;  // of the score: as near to means as to samples
+constexpr float kHighest = 1e5f;    // metres; no height on Earth, but a spike or an undeclared nodata value
 
 struct Residuals {
   std::size_t places = 0, near_places = 0;      // with both q; with q = 1
@@ -160,7 +166,9 @@ void judge_growth(const Residuals& sums, Estimate& out) {
     return;
   }
   const double exponent = exponent_of(sums, out.rounding_m);
-  out.growth_exponent = std::clamp(exponent, kLeastExponent, kLargestExponent);
+  out.growth_exponent = out.content == CellContent::kMeans
+                            ? exponent_from_apparent(exponent, out.content)
+                            : std::clamp(exponent, kLeastExponent, kLargestExponent);
   if (exponent > kOversampledExponent) {
     out.warnings.push_back(
         "The DEM is smoother than its cell size (growth exponent H = " + text(exponent) +
@@ -185,15 +193,38 @@ void judge_few(const Residuals& sums, Estimate& out) {
                          " places; better give vertical_rmse and geologic_variation.");
 }
 
+void judge_content(const ResidualGrowth& growth, std::optional<CellContent> asked, Estimate& out) {
+  out.content = asked.value_or(CellContent::kSamples);
+  if (growth.places() < kEnough || growth.rms(0) <= 0) return;
+  for (int i = 0; i < 3; ++i) out.rms_of_spacing[i] = growth.rms(i);
+  out.ridge_gain = growth.ridge_gain();
+  out.content_score = growth.means_score();
+  if (!asked && out.content_score >= kMeansFrom) out.content = CellContent::kMeans;
+}
+
+void check_itself(const std::vector<Grid<float>>& blocks, Estimate& out, Progress& progress) {
+  if (out.rms_of_spacing[0] <= 0) return;
+  const double growth = std::log2(out.rms_of_spacing[2] / out.rms_of_spacing[1]);
+  SelfCheck check(std::clamp(growth, kLeastExponent, kLargestExponent), out.rms_of_spacing[0]);
+  for (const Grid<float>& block : blocks) check.add(block, progress);
+  if (check.places() < kEnough) return;
+  const auto q = [&](double share) { return check.quantile(share); };
+  out.self_check = {check.places(), q(0.5), q(0.683), q(0.9), q(0.95), q(0.99)};
+  out.tails = check.tails();
+  out.local_scale = check.scale();
+}
+
 }  // namespace
 
 double Estimate::typical_with(double exponent) const {
-  const double growth = std::exp2(-exponent);
-  return growth * std::sqrt((2 * edge_ms + growth * diagonal_ms) / 3);
+  const ResidualScale scale = residual_scale(exponent, content, local_scale);
+  return scale.to_half_spacing * std::sqrt((2 * edge_ms + scale.diagonal * diagonal_ms) / 3);
 }
 
-Estimate estimate(const DemSource& source, Progress& progress) {
+Estimate estimate(const DemSource& source, std::optional<CellContent> content, Progress& progress) {
   Residuals sums;
+  ResidualGrowth growth;
+  std::vector<Grid<float>> kept;
   RoundingDetector rounding;
   const Blocks blocks(source);
   for (std::size_t i = 0; i < blocks.windows().size(); ++i) {
@@ -202,15 +233,19 @@ Estimate estimate(const DemSource& source, Progress& progress) {
     Grid<float> block = source.read(blocks.windows()[i], progress);
     drop_spikes(block, sums);
     add_block(block, sums);
+    growth.add(block);
     rounding.add(block);
+    kept.push_back(std::move(block));
   }
   Estimate out;
+  judge_content(growth, content, out);
   out.rounding_m = rounding.sd_m();
   if (sums.places >= kFewest) {
     judge_growth(sums, out);
   } else {
     judge_few(sums, out);
   }
+  check_itself(kept, out, progress);
   out.typical_m = out.typical_with(out.growth_exponent);
   return out;
 }
@@ -221,6 +256,10 @@ ErrorModel with_estimate(ErrorModel model, const Estimate& estimate) {
     model.geologic_shape = GeologicShape::kGrowth;
     if (!model.growth_exponent) model.growth_exponent = estimate.growth_exponent;
     if (!model.typical_m) model.typical_m = estimate.typical_with(*model.growth_exponent);
+    if (!model.samples_or_means) model.samples_or_means = estimate.content;
+    if (!model.local_scale) model.local_scale = estimate.local_scale;
+    if (!model.ridge_gain) model.ridge_gain = estimate.ridge_gain;
+    if (!model.tails) model.tails = estimate.tails;
   }
   return model;
 }

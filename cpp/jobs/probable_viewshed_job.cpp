@@ -75,14 +75,14 @@ Plan plan_memory(const std::vector<Post>& posts, const DemSource& source, const 
     plan.terrain = bounding(plan.terrain, post.lines);
   }
   if (options.extent) plan.canvas = window_of(options.extent, source);
-  // Rays that targets ask run beside them.
-  constexpr int kBeside = 2;
+  // Rays that targets ask run beside them; what is drawn there depends on samples farther out (posterior.h).
+  constexpr int kBeside = 2 + 4;
   plan.terrain = intersection({plan.terrain.col - kBeside, plan.terrain.row - kBeside,
                                plan.terrain.cols + 2 * kBeside, plan.terrain.rows + 2 * kBeside},
                               source.window());
   plan.terrain = with_room(plan.terrain, source);
-  // Of a cell: the posterior's two values, who asks, the layers and the place of a cell in doubt; results.
-  const std::size_t of_terrain = 2 * sizeof(float) + 1 + 2 * sizeof(Layers) + sizeof(std::uint32_t);
+  // Of a cell: the posterior's values, who asks, the layers and the place of a cell in doubt; results.
+  const std::size_t of_terrain = 5 * sizeof(float) + 1 + 2 * sizeof(Layers) + sizeof(std::uint32_t);
   const std::size_t of_canvas = (2 + heights) * sizeof(float) + sizeof(std::uint16_t) + 1;
   plan.bytes = LoadedTerrain::memory(plan.terrain, model, options).peak + plan.terrain.cells() * of_terrain +
                plan.canvas.cells() * of_canvas;
@@ -158,7 +158,8 @@ class Behind {
               terrain.scene().error,
               terrain.window().row,
               terrain.window().col,
-              options.seed} {}
+              options.seed,
+              terrain.scene().error.surface ? &posterior_.rises : nullptr} {}
   const OpenTerrain& open() const { return open_; }
 
  private:

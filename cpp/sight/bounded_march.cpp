@@ -116,8 +116,9 @@ void BoundedMarch::cross(int ray, int line) {
   const HeightRange &a = nodes_[at(before - first_node_)],
                     &b = nodes_[at(fan_.node_behind(minor) - first_node_)];
   const auto part = static_cast<float>(2 * minor - before);
-  const HeightRange ground{a.low + part * (b.low - a.low), a.high + part * (b.high - a.high)};
   const RayPlace place = fan_.crossing(ray, line, minor);
+  const float room = fine_.most_across(place, 2 * minor - before);
+  const HeightRange ground{a.low + part * (b.low - a.low) - room, a.high + part * (b.high - a.high) + room};
   HeightRange rise = slope_range(ground, eye_, ray_slope(place.s, per_2r));
   if (const Fineness fineness = refinement_.from_eye(line); fineness != Fineness::kNone) {
     FinePlaces places;

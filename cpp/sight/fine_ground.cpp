@@ -9,7 +9,7 @@ namespace sightbound {
 namespace {
 
 constexpr std::int64_t kDrawsOfSample = 8;
-constexpr std::uint64_t kOtherDraws = 0x66696e65;  // than those of the nodes
+constexpr std::uint64_t kFineDraws = 0x66696e65, kCrossingDraws = 0x63726f73;  // than those of the nodes
 
 // Of each number that goes into a slope: more than the roundings of a realisation differ from those of a
 // bound, some units of the 24th bit.
@@ -29,16 +29,36 @@ HeightRange slope_range(const HeightRange& ground, const HeightRange& eye, const
           (ground.high - eye.low) * slope.per_s - slope.drop + room};
 }
 
-FinePlace FineGround::middle(const RayPlace& a, const RayPlace& b, double per_2r) const {
-  const RayPlace place = half_way(a, b);
-  const double row = transposed_ ? place.major : place.minor, col = transposed_ ? place.minor : place.major;
+FineGround::FineGround(const OpenTerrain& terrain, bool transposed, int base_row, int base_col)
+    : terrain_(terrain),
+      transposed_(transposed),
+      base_row_(base_row),
+      base_col_(base_col),
+      half_across_(terrain.error.larger_side_m / 4),
+      across_per_amplitude_(per_amplitude(half_across_)) {}
+
+DrawKey FineGround::key_of(double row, double col, std::uint64_t kind) const {
   const auto eighth = [](double x, std::int64_t base) {
     return static_cast<std::int64_t>(std::floor(static_cast<double>(kDrawsOfSample) * x)) +
            kDrawsOfSample * base;
   };
-  return {{draw_key(terrain_.seed ^ kOtherDraws, eighth(row, terrain_.row + base_row_),
-                    eighth(col, terrain_.col + base_col_)),
-           spread(row, col, 0.5 * std::abs(b.s - a.s))},
+  return draw_key(terrain_.seed ^ kind, eighth(row, terrain_.row + base_row_),
+                  eighth(col, terrain_.col + base_col_));
+}
+
+Departure FineGround::across(const RayPlace& place, double part) const {
+  return {key_of(row_of(place), col_of(place), kCrossingDraws), spread_across(place, part)};
+}
+
+float FineGround::spread_across(const RayPlace& place, double part) const {
+  const float middle = spread(row_of(place), col_of(place), half_across_, across_per_amplitude_);
+  return static_cast<float>(middle * std::sqrt(4 * part * (1 - part)));
+}
+
+FinePlace FineGround::middle(const RayPlace& a, const RayPlace& b, double per_2r) const {
+  const RayPlace place = half_way(a, b);
+  const double row = row_of(place), col = col_of(place), half_m = 0.5 * std::abs(b.s - a.s);
+  return {{key_of(row, col, kFineDraws), spread(row, col, half_m, per_amplitude(half_m))},
           ray_slope(place.s, per_2r)};
 }
 
@@ -67,13 +87,28 @@ float FineGround::highest(const FinePlaces& places, Fineness fineness, const Hei
                    rise(places[2], between(places[2], half, b))});
 }
 
-float FineGround::spread(double row, double col, double half_m) const {
+double FineGround::per_amplitude(double half_m) const {
+  const ErrorField& error = terrain_.error;
+  const GrowthProfile& profile = error.profile;
+  if (!error.surface || !terrain_.rises) {
+    const bool by_amplitude = profile.shape == GeologicShape::kGaussian && profile.range_m == 0;
+    return by_amplitude ? NAN : profile(half_m, 0);
+  }
+  // Self-affine: the side of a cell in small, with both ends and the ground beside it known.
+  const double side = 0.5 * (error.surface->row_edge.spread + error.surface->col_edge.spread);
+  return error.plain_per_amplitude() * error.surface->points * side *
+         std::pow(half_m / profile.half_spacing_m, profile.exponent);
+}
+
+float FineGround::spread(double row, double col, double half_m, double per_amplitude) const {
   const auto nearest = [](double x, int base, int count) {
     return std::clamp(base + static_cast<int>(std::lround(x)), 0, count - 1);
   };
   const double amplitude = terrain_.error.amplitude.at(nearest(row, base_row_, terrain_.mean.rows()),
                                                        nearest(col, base_col_, terrain_.mean.cols()));
-  return amplitude > 0 ? static_cast<float>(amplitude * terrain_.error.profile(half_m, amplitude)) : 0.0f;
+  if (amplitude <= 0) return 0;
+  return static_cast<float>(
+      amplitude * (std::isnan(per_amplitude) ? terrain_.error.profile(half_m, amplitude) : per_amplitude));
 }
 
 }  // namespace sightbound

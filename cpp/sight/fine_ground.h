@@ -32,7 +32,7 @@ HeightRange slope_range(const HeightRange& ground, const HeightRange& eye, const
 
 // A height on the way between two others, given theirs.
 struct FinePlace {
-  NodeDraw draw;
+  Departure draw;
   RaySlope slope;
 };
 
@@ -44,23 +44,37 @@ using FinePlaces = FinePlace[3];
 class FineGround {
  public:
   // With the base sample on the terrain's grid.
-  FineGround(const OpenTerrain& terrain, bool transposed, int base_row, int base_col)
-      : terrain_(terrain), transposed_(transposed), base_row_(base_row), base_col_(base_col) {}
+  FineGround(const OpenTerrain&, bool transposed, int base_row, int base_col);
 
   // `per_2r`: (1 - refraction) / 2R along the ray.
   void between(const RayPlace& a, const RayPlace& b, double per_2r, Fineness, FinePlaces& out) const;
+
+  // Ground taken from two nodes half a cell apart, a share `part` of the way from the first: what it departs
+  // by from the line between them.
+  Departure across(const RayPlace&, double part) const;
+  float most_across(const RayPlace& place, double part) const {
+    return terrain_.largest_draw * spread_across(place, part);
+  }
 
   // No realisation's slope is higher. `fineness` is not kNone.
   float highest(const FinePlaces&, Fineness, const HeightRange& a, const HeightRange& b,
                 const HeightRange& eye) const;
 
  private:
+  DrawKey key_of(double row, double col, std::uint64_t kind) const;
   FinePlace middle(const RayPlace& a, const RayPlace& b, double per_2r) const;
-  float spread(double row, double col, double half_m) const;
+  // Of ground half-way between two places, over the amplitude there; NaN where it depends on that.
+  double per_amplitude(double half_m) const;
+  float spread_across(const RayPlace&, double part) const;
+  float spread(double row, double col, double half_m, double per_amplitude) const;
+  double row_of(const RayPlace& place) const { return transposed_ ? place.major : place.minor; }
+  double col_of(const RayPlace& place) const { return transposed_ ? place.minor : place.major; }
 
   const OpenTerrain& terrain_;
   const bool transposed_;
   const int base_row_, base_col_;
+  const double half_across_;  // metres: half of half a cell
+  const double across_per_amplitude_;
 };
 
 }  // namespace sightbound

@@ -49,14 +49,7 @@ HeightRange ProbableView::eye_range() const {
 SixteenEyes ProbableView::eyes(std::uint32_t first_realisation) const {
   SixteenEyes eyes{};
   nodes_at_eye([&](int line, int node, float part) {
-    Lanes a, b, height;
-    draw(columns_[0].sample(line / 2, node / 2), first_realisation, a);
-    draw(columns_[0].sample((line + 1) / 2, (node + 1) / 2), first_realisation, b);
-    if (line % 2 == 0 && node % 2 == 0) {
-      height = a;
-    } else {
-      draw_between(columns_[0].node(line, node), first_realisation, a, b, height);
-    }
+    const Lanes height = columns_[0].heights(line, node, first_realisation);
     for (int l = 0; l < kLanes; ++l) eyes.ground.v[l] += part * height.v[l];
   });
   for (int l = 0; l < kLanes; ++l) eyes.eye.v[l] = eyes.ground.v[l] + static_cast<float>(eye_.height);

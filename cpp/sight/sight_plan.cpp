@@ -29,10 +29,10 @@ class Writer {
         fine_(fine),
         refinement_(refinement),
         stride_(std::bit_ceil(static_cast<unsigned>(march.widest() / 2 + 2))),
-        held_(4 * static_cast<std::size_t>(stride_), {-1, -1}),
+        held_(6 * static_cast<std::size_t>(stride_), {kNowhere, kNowhere}),
         places_(at(fan.rays()), fan.eye()) {
     plan_.rays = fan.rays();
-    plan_.slots = 4 * stride_;
+    plan_.slots = 6 * stride_;
   }
 
   SightPlan write(const std::function<std::uint32_t(int row, int col)>& item_of) {
@@ -69,9 +69,10 @@ class Writer {
     const int before = fan_.node_before(minor);
     const RayPlace place = fan_.crossing(i, line, minor);
     const Fineness fineness = refinement_.from_eye(line);
-    plan_.crossings.push_back({ray_slope(place.s, per_2r), static_cast<float>(2 * minor - before),
-                               node(line, before), node(line, fan_.node_behind(minor)),
-                               static_cast<std::uint32_t>(i),
+    const double part = 2 * minor - before;
+    plan_.crossings.push_back({ray_slope(place.s, per_2r), static_cast<float>(part),
+                               fine_.across(place, part), node(line, before),
+                               node(line, fan_.node_behind(minor)), static_cast<std::uint32_t>(i),
                                add_fine(places_[at(i)], place, per_2r, fineness), fineness});
     places_[at(i)] = place;
   }
@@ -84,24 +85,44 @@ class Writer {
     return first;
   }
 
-  // Samples of even and odd lines of samples have places of their own: a line of nodes lies between two.
+  // What a slot holds: half cells.
+  using Place = std::pair<int, int>;
+  bool takes(SightPlan::Slot slot, const Place& place) { return std::exchange(held_[slot], place) != place; }
+
+  // Samples of even and odd lines of samples have slots of their own, for a line of nodes lies between two;
+  // so have centres of squares, for it has two beside it.
   SightPlan::Slot sample(int major, int minor) {
-    const SightPlan::Slot slot =
-        (static_cast<unsigned>(major) % 2) * stride_ + static_cast<unsigned>(minor) % stride_;
-    if (std::exchange(held_[slot], {major, minor}) != std::pair{major, minor})
-      plan_.samples.push_back({columns_.sample(major, minor), slot});
+    const SightPlan::Slot slot = (unsigned(major) % 2) * stride_ + unsigned(minor) % stride_;
+    if (takes(slot, {2 * major, 2 * minor})) plan_.samples.push_back({columns_.sample(major, minor), slot});
+    return slot;
+  }
+
+  SightPlan::Slot centre(int major, int minor) {
+    const unsigned line = unsigned((major + 1) / 2), place = unsigned((minor + 1) / 2);
+    const SightPlan::Slot slot = (2 + line % 2) * stride_ + place % stride_;
+    if (takes(slot, {major, minor})) plan_.samples.push_back({columns_.centre(major, minor), slot});
     return slot;
   }
 
   SightPlan::Slot node(int line, int half_cells) {
     const int major = fan_.grid_major(fan_.major(line)), minor = fan_.grid_minor(half_cells);
-    const SightPlan::Slot a = sample(major / 2, minor / 2);
-    if (major % 2 == 0 && minor % 2 == 0) return a;
-    const SightPlan::Slot b = sample((major + 1) / 2, (minor + 1) / 2);
-    const SightPlan::Slot slot = 2 * stride_ + static_cast<unsigned>(minor) % (2 * stride_);
-    if (std::exchange(held_[slot], {major, minor}) != std::pair{major, minor})
-      plan_.nodes.push_back({columns_.node(major, minor), a, b, slot});
-    return slot;
+    const int m = major / 2, n = minor / 2, m1 = (major + 1) / 2, n1 = (minor + 1) / 2;
+    SightPlan::Node made{columns_.node(major, minor), sample(m, n), 0, 0, 0, 0, 0, 0};
+    if (m == m1 && n == n1) return made.a;
+    made.b = sample(m1, n1);
+    if (made.draw.kind == NodeDraw::Kind::kCentre) {
+      made.b = sample(m, n1);
+      made.c = sample(m1, n);
+      made.d = sample(m1, n1);
+      made.e = centre(major, minor);
+    } else if (made.draw.kind == NodeDraw::Kind::kSide) {
+      const int i = m == m1 ? 1 : 0, j = 1 - i;  // to the centres on either side
+      made.e = centre(major - i, minor - j);
+      made.f = centre(major + i, minor + j);
+    }
+    made.slot = 4 * stride_ + unsigned(minor) % (2 * stride_);
+    if (takes(made.slot, {major, minor})) plan_.nodes.push_back(made);
+    return made.slot;
   }
 
   const BoundedMarch& march_;
@@ -110,9 +131,10 @@ class Writer {
   const FineGround& fine_;
   const Refinement refinement_;
   SightPlan plan_;
+  static constexpr int kNowhere = std::numeric_limits<int>::min();
   const unsigned stride_;
-  std::vector<std::pair<int, int>> held_;  // by the slots: major and minor
-  std::vector<RayPlace> places_;           // of the rays
+  std::vector<Place> held_;       // by the slots
+  std::vector<RayPlace> places_;  // of the rays
 };
 
 SIGHTBOUND_INLINE void raise(const Lanes& ground, const Lanes& eye, const RaySlope& slope, Lanes& horizon) {
@@ -162,7 +184,9 @@ void carry_out(const SightPlan& plan, const Lanes& eye, const float* heights, st
     }
     for (; from.nodes < to.nodes; ++from.nodes) {
       const SightPlan::Node& node = plan.nodes[from.nodes];
-      draw_between(node.draw, first, work.slots[node.a], work.slots[node.b], work.slots[node.slot]);
+      const Lanes* of = work.slots;
+      draw(node.draw, first, {of[node.a], of[node.b], of[node.c], of[node.d], of[node.e], of[node.f]},
+           work.slots[node.slot]);
     }
     for (; from.targets < to.targets; ++from.targets) {
       const SightPlan::Target& target = plan.targets[from.targets];
@@ -184,7 +208,8 @@ void carry_out(const SightPlan& plan, const Lanes& eye, const float* heights, st
       const SightPlan::Crossing& crossing = plan.crossings[from.crossings];
       const Lanes &a = work.slots[crossing.a], &b = work.slots[crossing.b];
       Lanes ground, &horizon = work.horizons[crossing.ray], &place = work.places[crossing.ray];
-      for (int l = 0; l < kLanes; ++l) ground.v[l] = a.v[l] + crossing.part * (b.v[l] - a.v[l]);
+      const auto between = [&](int l) { return a.v[l] + crossing.part * (b.v[l] - a.v[l]); };
+      draw_about(crossing.across, first, between, ground);
       raise_between(plan.fine.data() + crossing.fine, crossing.fineness, first, place, ground, eye, horizon);
       raise(ground, eye, crossing.slope, horizon);
       place = ground;

@@ -19,12 +19,14 @@ struct SightPlan {
   };
   struct Node {
     NodeDraw draw;
-    Slot a, b, slot;  // between a and b
+    Slot a, b, c, d, e, f;  // its parents, in the order of NodeParents
+    Slot slot;
   };
   // A ray goes on to the next place.
   struct Crossing {
     RaySlope slope;
     float part;  // of the way from a to b
+    Departure across;
     Slot a, b;
     std::uint32_t ray, fine;  // first of the places between the last crossing and this
     Fineness fineness;

@@ -10,6 +10,7 @@ import sightbound as sb
 import terrains
 from osgeo import ogr
 from sight_oracle import Errors, Oracle
+from sightbound._loading import core
 
 UTM, UTM_GT = "EPSG:32633", (612340.0, 10.0, 0.0, 5538120.0, 0.0, -10.0)
 SHAPE = (40, 50)
@@ -46,6 +47,7 @@ def test_nothing_said_and_zero_said():
     sb.ErrorModel(), sb.ErrorModel(1.5, 0.5, 2.0), sb.ErrorModel(0.0, 0.0, 0.0), sb.ErrorModel(1.0, 0.0, 2.0, 7.5),
     sb.ErrorModel(1.0, 0.0, 2.0, 7.5, "step"), sb.ErrorModel(1.0, 0.0, 2.0, geologic_model="growth", growth_exponent=1.2),
     sb.ErrorModel("sigma.tif", 0.0, "delta.tif"),
+    sb.ErrorModel(1.0, tails="student", correlation_length=12.5, shared_bias=-0.3, samples_or_means="means", ridge_gain=0.1),
     sb.ErrorModel(1.0, 0.0, 0.5, terrain_types="types.gpkg", terrain_field="class", terrain_table={"a": 1.5, "b": 3.0}),
 ], ids=repr)
 def test_json_round_trip(model, tmp_path):
@@ -54,9 +56,45 @@ def test_json_round_trip(model, tmp_path):
     (tmp_path / "model.json").write_text(text)
     for back in (sb.ErrorModel.from_json(text), sb.ErrorModel.from_json(tmp_path / "model.json")):
         for field in ("vertical_rmse", "horizontal_rmse", "geologic_variation", "geologic_range", "geologic_model", "growth_exponent",
-                      "terrain_types", "terrain_field", "terrain_table"):
+                      "terrain_types", "terrain_field", "terrain_table", "tails", "correlation_length", "shared_bias",
+                      "samples_or_means", "ridge_gain"):
             assert getattr(back, field) == getattr(model, field), field
         assert back.to_json() == text
+
+
+def test_the_nature_of_errors():
+    model = sb.ErrorModel()
+    assert (model.tails, model.correlation_length, model.shared_bias, model.samples_or_means, model.ridge_gain) == (None, 0, 0, None, None)
+    assert sb.ErrorModel(samples_or_means="auto").samples_or_means is None
+    for wrong in (dict(tails="cauchy"), dict(correlation_length=-1), dict(shared_bias=1e5), dict(samples_or_means="both"), dict(ridge_gain=3)):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            sb.ErrorModel(**wrong)
+
+
+DENSITIES = {
+    "normal": lambda k: np.exp(-k * k / 2) / np.sqrt(2 * np.pi),
+    "laplace": lambda k: np.exp(-np.sqrt(2) * np.abs(k)) / np.sqrt(2),
+    # Student's with 5 degrees of freedom, at t = k sqrt(5/3): unit variance.
+    "student": lambda k: 8 / (3 * np.pi * np.sqrt(5)) * np.sqrt(5 / 3) * (1 + k * k / 3) ** -3.0,
+}
+
+
+@pytest.mark.parametrize("tails", DENSITIES)
+def test_tails_are_their_densities(tails):
+    """Against Gauss-Legendre integrals: unit variance, and z(c) encloses c."""
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+    density = DENSITIES[tails]
+    a = (nodes + 1) * np.pi / 4  # k = tan(a)
+    k = np.tan(a)
+    moments = [np.sum(weights * np.pi / 4 * 2 * density(k) * k**n * (1 + k * k)) for n in (0, 2)]
+    assert moments == pytest.approx([1, 1], abs=1e-6)
+    for c in (0.2, 0.5, 0.9, 0.95, 0.99, 0.999):
+        z = core.two_sided_quantile(c, tails)
+        inside = np.sum(weights * z / 2 * 2 * density((nodes + 1) * z / 2))
+        assert inside == pytest.approx(c, abs=1e-12)
+        assert core.tails_cdf(z, tails) == pytest.approx((1 + c) / 2, abs=1e-14)
+        assert core.tails_cdf(-z, tails) == pytest.approx((1 - c) / 2, abs=1e-14)
+    assert core.two_sided_quantile(0.99, "student") == pytest.approx(3.1233, abs=1e-4)
 
 
 def test_json_cannot_hold_arrays():

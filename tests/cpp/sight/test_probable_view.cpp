@@ -51,7 +51,7 @@ Seen look(const OpenTerrain& terrain, double col, double row, const Refinement& 
 struct Case {
   double col, row;
   float spread;  // of the samples
-  bool holes, is_refined;
+  bool holes, is_refined, is_learnt;
 };
 class ProbableViews : public ::testing::TestWithParam<Case> {};
 
@@ -59,9 +59,21 @@ TEST_P(ProbableViews, see_the_same_as_when_all_is_drawn) {
   const Case& test = GetParam();
   testing::RoughGround ground = testing::rough_ground(kRows, kCols, 0, test.holes);
   testing::vary_error(ground);
-  const SampleField spread(test.spread);
+  if (test.is_learnt) {
+    ground.error.surface = fractal_surface(0.7, CellContent::kMeans);
+    ground.error.ridge_gain = 0.1;
+  }
+  ground.error.sampling = SampleField(test.spread);
+  Progress progress;
+  const Posterior behind = posterior(ground.heights, ground.error, Workers(1), progress);
   const Refinement refinement = test.is_refined ? Refinement::end_zones() : Refinement::none();
-  OpenTerrain terrain{ground.heights, spread, ground.error, 5, 7, 3};
+  OpenTerrain terrain{behind.mean.empty() ? ground.heights : behind.mean,
+                      behind.spread,
+                      ground.error,
+                      5,
+                      7,
+                      3,
+                      test.is_learnt ? &behind.rises : nullptr};
   const Seen made = look(terrain, test.col, test.row, refinement);
   terrain.largest_draw = 1e4f;
   const Seen everywhere = look(terrain, test.col, test.row, refinement);
@@ -71,10 +83,12 @@ TEST_P(ProbableViews, see_the_same_as_when_all_is_drawn) {
   EXPECT_GT(some, 100);  // or the test would say nothing
 }
 
-INSTANTIATE_TEST_SUITE_P(Eyes, ProbableViews,
-                         ::testing::Values(Case{45, 35, 0, false, true}, Case{45.3, 35.6, 0.2f, false, true},
-                                           Case{0, 0, 0.2f, true, true}, Case{89, 20, 0, true, false},
-                                           Case{30.5, 69, 0.5f, false, false}));
+INSTANTIATE_TEST_SUITE_P(
+    Eyes, ProbableViews,
+    ::testing::Values(Case{45, 35, 0, false, true, false}, Case{45.3, 35.6, 0.2f, false, true, false},
+                      Case{0, 0, 0.2f, true, true, false}, Case{89, 20, 0, true, false, false},
+                      Case{30.5, 69, 0.5f, false, false, false}, Case{45, 35, 0, true, true, true},
+                      Case{0.4, 60.5, 0.1f, false, true, true}));
 
 }  // namespace
 }  // namespace sightbound
