@@ -53,6 +53,7 @@ struct ErrorField {
   std::vector<CellSize> cell_sizes;  // one per row, at the DEM's middle column (so that windows agree)
   std::vector<double> farthest;  // one per row: the largest distance to the sample within its cell, metres
   double larger_side_m = 0;      // L
+  Tails tails = Tails::kNormal;  // of the error in units of sigma
 
   // Largest profile value anywhere in a cell of `row` with that amplitude.
   double largest_profile(int row, double amplitude_there) const {
