@@ -141,6 +141,7 @@ void bind_estimate(py::module_& m) {
       .def_readonly("growth_exponent", &Estimate::growth_exponent)
       .def_readonly("typical_m", &Estimate::typical_m)
       .def_readonly("rounding_m", &Estimate::rounding_m)
+      .def_readonly("edge_ms", &Estimate::edge_ms)
       .def_readonly("warnings", &Estimate::warnings);
   m.def(
       "estimate",
