@@ -137,18 +137,38 @@ void bind_accuracy(py::module_& m) {
 
 // What the DEM itself tells; `warnings` are data.
 void bind_estimate(py::module_& m) {
+  py::class_<Estimate::Quantiles>(m, "SelfCheck")
+      .def_readonly("places", &Estimate::Quantiles::places)
+      .def_readonly("median", &Estimate::Quantiles::median)
+      .def_readonly("q683", &Estimate::Quantiles::q683)
+      .def_readonly("q90", &Estimate::Quantiles::q90)
+      .def_readonly("q95", &Estimate::Quantiles::q95)
+      .def_readonly("q99", &Estimate::Quantiles::q99);
   py::class_<Estimate>(m, "Estimate")
       .def_readonly("growth_exponent", &Estimate::growth_exponent)
       .def_readonly("typical_m", &Estimate::typical_m)
       .def_readonly("rounding_m", &Estimate::rounding_m)
-      .def_readonly("edge_ms", &Estimate::edge_ms)
+      .def_property_readonly(
+          "rms_of_spacing",
+          [](const Estimate& e) { return std::vector<double>(e.rms_of_spacing, e.rms_of_spacing + 3); })
+      .def_property_readonly("samples_or_means", [](const Estimate& e) { return name_of(e.content); })
+      .def_readonly("means_score", &Estimate::content_score)
+      .def_readonly("ridge_gain", &Estimate::ridge_gain)
+      .def_property_readonly("tails", [](const Estimate& e) { return name_of(e.tails); })
+      .def_readonly("local_scale", &Estimate::local_scale)
+      .def_readonly("self_check", &Estimate::self_check)
       .def_readonly("warnings", &Estimate::warnings);
   m.def(
       "estimate",
-      [](const std::shared_ptr<DemSource>& dem, py::object progress) {
-        return ProgressBridge(std::move(progress)).run([&](Progress& p) { return estimate(*dem, p); });
+      [](const std::shared_ptr<DemSource>& dem, const std::optional<std::string>& samples_or_means,
+         py::object progress) {
+        std::optional<CellContent> content;
+        if (samples_or_means) content = cell_content_from(*samples_or_means);
+        return ProgressBridge(std::move(progress)).run([&](Progress& p) {
+          return estimate(*dem, content, p);
+        });
       },
-      py::arg("dem"), py::arg("progress"));
+      py::arg("dem"), py::arg("samples_or_means"), py::arg("progress"));
   m.def("with_estimate", &with_estimate, py::arg("model"), py::arg("estimate"));
   m.def(
       "complete_model",

@@ -65,23 +65,26 @@ def _model_rows(model):
         (tr("Error of the samples, vertical and horizontal (m)"), f"{model.vertical_rmse:.4g}; {model.horizontal_rmse:.4g}"),
         (tr("Correlation length of the samples' error (m)"), f"{model.correlation_length:.4g}"),
         (tr("Bias (m, model minus truth)"), f"{model.shared_bias:.4g}"),
-        (tr("Tails"), model.tails or tr("normal")),
-        (tr("A cell holds"), model.samples_or_means or tr("samples (taken to)")),
+        (tr("Tails"), tr(model.tails or "normal")),
+        (tr("A cell holds (0 looks like samples, 1 like means)"), f"{model.samples_or_means} ({report['means_score']:.2g})"),
+        (tr("Ridges and valleys planed off (m per m of curvature)"), f"{report['ridge_gain']:.3g}"),
     ]
+    check = report["self_check"]
+    if check["places"]:
+        told = "; ".join(f"{check[name]:.3g}" for name in ("median", "q90", "q95", "q99"))
+        rows.append((tr("Own samples out of every other: 50, 90, 95 and 99 % lie within so many sigma"), told))
     return rows
 
 
 def _growth(report):
-    steps = {int(step): rms for step, rms in report["spacing_rms"].items()}
     chart = Chart(tr("spacing of the samples (cells)"), tr("error half-way between (m)"), log_x=True, log_y=True)
-    measured = [(step, rms) for step, rms in steps.items() if step > 1]
-    if measured and measured[0][1] > 0:
-        first, rms = measured[0]
-        law = [(step, rms * (step / first) ** report["growth_exponent"]) for step in (1, *[step for step, _ in measured])]
-        chart.line(law, "first", tr("spacing^{:.2f}").format(report["growth_exponent"]))
+    measured = [(2.0**power, rms) for power, rms in enumerate(report["rms_of_spacing"], 1) if rms > 0]
+    typical = report["typical_sigma"]
+    law = [(spacing, typical * spacing ** report["growth_exponent"]) for spacing in (1.0, *(one for one, _ in measured))]
+    chart.line(law if len(law) > 1 else [], "first", tr("spacing^{:.2f}").format(report["growth_exponent"]))
     chart.dots(measured, "dot", tr("measured"))
-    chart.dots([(1, steps[1])], "ring", tr("expected of the model"))
-    return chart.svg()
+    chart.dots([(1.0, typical)], "ring", tr("expected of the model"))
+    return chart.svg() or f"<p>{tr('Nothing could be measured.')}</p>"
 
 
 def _map(between):

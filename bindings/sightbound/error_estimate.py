@@ -9,6 +9,8 @@ from ._loading import core
 from .dem import Dem, core_dem, read_dem
 from .error_model import ErrorModel, core_model
 
+_QUANTILES = ("places", "median", "q683", "q90", "q95", "q99")  # of errors over predicted sd
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Union
@@ -47,8 +49,8 @@ def estimate_error(
 
     Args:
         dem: the DEM; some blocks spread over it are read.
-        samples_or_means: what a cell holds, "samples" (the height of its middle) or "means" (the mean over it); "auto"
-            finds out. (An ErrorModel here is taken as `error_model`.)
+        samples_or_means: what a cell holds, "samples" (the height of its middle) or "means" (the mean over it); "auto":
+            whichever the growth of residuals looks like. (An ErrorModel here is taken as `error_model`.)
         checkpoints: the path of points with elevations (any vector file, any CRS), or an array [n, 3] of x, y in the
             DEM's CRS and z in metres. At least ten.
         reference: a better DEM of at least a part, any CRS and cell size: a Dem or a path.
@@ -62,8 +64,9 @@ def estimate_error(
         progress: called with the fraction done; False cancels.
 
     Returns:
-        A complete model. Its `report` holds growth_exponent, typical_sigma, rounding and spacing_rms (metres), warnings;
-        with checkpoints and reference also what they told, under these names, as dicts: see docs/concepts/error_model.md.
+        A complete model. Its `report` holds growth_exponent, typical_sigma, rounding and rms_of_spacing (metres), more of
+        what the DEM told of itself, and warnings; with checkpoints and reference also what they told, under these names,
+        as dicts: see docs/concepts/error_model.md.
 
     Raises:
         ValueError: a wrong argument; fewer than ten places with both heights; no overlap.
@@ -81,23 +84,30 @@ def estimate_error(
     if samples_or_means != "auto":
         learnt.samples_or_means = samples_or_means
     parts = _Parts(progress, 1 + (checkpoints is not None) + (reference is not None))
-    found = core.estimate(source, parts.next())
+    found = core.estimate(source, learnt.samples_or_means, parts.next())
     report: dict[str, Any] = {
         "growth_exponent": found.growth_exponent,
         "typical_sigma": found.typical_m,
         "rounding": found.rounding_m,
-        "spacing_rms": _growth(found),
+        "rms_of_spacing": found.rms_of_spacing,
+        "samples_or_means": found.samples_or_means,
+        "means_score": found.means_score,
+        "ridge_gain": found.ridge_gain,
+        "tails": found.tails,
+        "local_scale": found.local_scale,
+        "self_check": {name: getattr(found.self_check, name) for name in _QUANTILES},
         "warnings": list(found.warnings),
     }
-    completed = core.with_estimate(given._on(dem), found)
     if reference is not None:
         other = reference if isinstance(reference, Dem) else read_dem(reference)
-        content = learnt.samples_or_means or completed.samples_or_means or "samples"
-        check = core.check_with_reference(source, core_dem(other), content, bool(correct_shift), parts.next())
+        check = core.check_with_reference(
+            source, core_dem(other), found.samples_or_means, bool(correct_shift), parts.next()
+        )
         learnt = core.with_check(learnt, check)
-        report["reference"] = {**check.details(source), "samples_or_means": content}
+        report["reference"] = check.details(source)
     if checkpoints is not None:
         places, notes = _places(source, checkpoints, layer, elevation_field, checkpoint_unit)
+        completed = core.with_estimate(given._on(dem), found)
         check = core.check_with_points(source, completed, places, bool(correct_shift), parts.next())
         report["checkpoints"] = check.details(source)
         if reference is not None and given.shared_bias == 0:
@@ -210,12 +220,6 @@ class _Parts:
         progress, count, done = self._progress, self._count, self._done
         self._done += 1
         return None if progress is None else lambda fraction: progress((done + fraction) / count)
-
-
-def _growth(found: core.Estimate) -> dict[int, float]:
-    """The error between samples by the spacing in cells: 1 is predicted, the others are measured."""
-    rms = found.edge_ms**0.5
-    return {1: found.typical_m, 2: rms, 4: rms * 2.0**found.growth_exponent}
 
 
 def _places(source: core.DemSource, checkpoints: Any, layer: Any, field: Any, unit: str) -> tuple[Any, list[str]]:

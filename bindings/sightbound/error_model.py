@@ -234,8 +234,8 @@ class ErrorModel:
 
     @property
     def report(self) -> dict[str, Any]:
-        """What estimate_error() found: growth_exponent, typical_sigma, rounding, spacing_rms (metres), warnings; by check
-        points and reference if given. Else empty."""
+        """What estimate_error() found: growth_exponent, typical_sigma, rounding, rms_of_spacing (metres) and more; of
+        checkpoints and reference under these names; warnings. Else empty."""
         return dict(self._report)
 
     def __repr__(self) -> str:

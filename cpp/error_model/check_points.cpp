@@ -126,8 +126,7 @@ void warn(ErrorCheck& check) {
         " m) from the median: look whether they are blunders. They were kept.");
   }
   if (found.count < kFewestForTails) {
-    say("With " + std::to_string(found.count) +
-        " places the kind of tails cannot be told (needed: 100); they are taken as normal.");
+    say("With " + std::to_string(found.count) + " places the kind of tails cannot be told (needed: 100).");
   }
   if (check.at_flat == 0 && check.between > 0) {
     say("The residuals are no larger than what the DEM's own shape lets expect between its samples: nothing "
@@ -169,7 +168,7 @@ ErrorModel with_check(ErrorModel model, const ErrorCheck& check) {
     model.vertical_rmse = check.at_flat;
     if (model.horizontal_rmse == 0) model.horizontal_rmse = check.per_slope;
   }
-  if (!model.tails) model.tails = check.tails;
+  if (!model.tails && check.statistics.count >= kFewestForTails) model.tails = check.tails;
   if (model.correlation_length == 0)
     model.correlation_length = check.variogram.correlation_length(squared(check.between));
   if (model.shared_bias == 0) model.shared_bias = check.statistics.median;

@@ -92,6 +92,7 @@ void validate_shape(const ErrorModel& model) {
                        " (bare earth: about 1), or no geologic_variation, to estimate both.");
   }
   if (model.typical_m) require_error("typical_m", *model.typical_m);
+  if (model.local_scale) require_between("local_scale", *model.local_scale, 0.01, 100, "");
 }
 
 void validate_types(const TerrainTypes& types) {

@@ -3,7 +3,7 @@
 //   1.5                                                  metres
 //   {"raster": "sigma.tif", "band": 1}                   a raster file
 //   {"from_dem": {}}, also null                          to be learnt from the DEM
-//   {"from_dem": {"exponent": 0.93, "typical_m": 1.2}}   learnt: local map with this growth
+//   {"from_dem": {"exponent": 0.93, "typical_m": 1.2, "scale": 1}}   learnt: local map with this growth
 //   (geologic_variation only)
 // What was added later is written only where it says something: a model that does not use it reads the same
 // as before.
@@ -97,9 +97,10 @@ Quantity quantity_from(const Json& value, const std::string& field) {
 void read_recipe(const Json& value, ErrorModel& model) {
   if (!value.is_object() || !value.contains("from_dem")) return;
   const Json& recipe = value["from_dem"];
-  require_known(recipe, "geologic_variation.from_dem", {"exponent", "typical_m"});
+  require_known(recipe, "geologic_variation.from_dem", {"exponent", "typical_m", "scale"});
   model.growth_exponent = optional_number(recipe, "exponent");
   model.typical_m = optional_number(recipe, "typical_m");
+  model.local_scale = optional_number(recipe, "scale");
 }
 
 Json to_json(const TerrainTypes& types) {
@@ -188,6 +189,7 @@ std::string written(const ErrorModel& model, bool arrays_allowed) {
     Json& recipe = json["geologic_variation"]["from_dem"];
     if (model.growth_exponent) recipe["exponent"] = *model.growth_exponent;
     if (model.typical_m) recipe["typical_m"] = *model.typical_m;
+    if (model.local_scale) recipe["scale"] = *model.local_scale;
   } else if (model.growth_exponent) {
     json["growth_exponent"] = *model.growth_exponent;
   }

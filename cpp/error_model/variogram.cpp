@@ -2,7 +2,8 @@
 // Method of the fit. For a given length the model is linear in nugget and sill: weighted least squares, both
 // kept >= 0. The length with the least sum of squares is looked for on a geometric ladder, then between its
 // neighbours. Weights: the variance of a semivariance is about 2 gamma^2 / pairs when pairs are independent;
-// pairs that share places make it 2 gamma^2 (1 / pairs + 1 / places).
+// pairs that share places make it 2 gamma^2 (1 / pairs + 1 / places). For gamma the
+// largest stands, lest a few short distances outweigh all others where the shape is not quite exponential.
 #include "error_model/variogram.h"
 
 #include <algorithm>
@@ -34,14 +35,17 @@ struct Fit {
   double misfit = std::numeric_limits<double>::infinity();  // chi square
 };
 
-double weight_of(const LagBin& bin, double places) {
-  return 1 / (2 * bin.semivariance * bin.semivariance * (1 / bin.pairs + 1 / places));
+double largest_of(const std::vector<LagBin>& bins) {
+  double largest = 0;
+  for (const LagBin& bin : bins) largest = std::max(largest, bin.semivariance);
+  return largest;
 }
 
 Fit fit_of(const std::vector<LagBin>& bins, double places, double length) {
+  const double gamma = largest_of(bins);
   double w = 0, wf = 0, wff = 0, wg = 0, wfg = 0, wgg = 0;
   for (const LagBin& bin : bins) {
-    const double weight = weight_of(bin, places), g = bin.semivariance;
+    const double weight = 1 / (2 * gamma * gamma * (1 / bin.pairs + 1 / places)), g = bin.semivariance;
     const double f = length > 0 ? 1 - std::exp(-bin.distance / length) : 0;
     w += weight, wf += weight * f, wff += weight * f * f;
     wg += weight * g, wfg += weight * f * g, wgg += weight * g * g;

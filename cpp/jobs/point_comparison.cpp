@@ -122,7 +122,8 @@ std::vector<CheckedPlace> PointComparison::places(Xy shift, const ErrorModel& co
     place.slope = interpolate(slope, here.x, here.y);
     place.curvature = curvature_at(tile.heights, here);
     const double widest = interpolate(amplitude, here.x, here.y);
-    place.between = widest * field.profile(distance_to_sample(at, plan_.cell(at.y)), widest);
+    const double grown = field.profile(distance_to_sample(at, plan_.cell(at.y)), widest);
+    place.between = widest * (grown + field.sampling_per_amplitude());
     out.push_back(place);
   });
   return out;

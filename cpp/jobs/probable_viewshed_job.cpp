@@ -56,15 +56,15 @@ Plan plan_memory(const std::vector<Post>& posts, const DemSource& source, const 
     plan.terrain = bounding(plan.terrain, post.lines);
   }
   if (options.extent) plan.canvas = window_of(options.extent, source);
-  // Rays that targets ask run beside them.
-  constexpr int kBeside = 2;
+  // Rays that targets ask run beside them; what is drawn there depends on samples farther out (posterior.h).
+  constexpr int kBeside = 2 + 4;
   plan.terrain = intersection({plan.terrain.col - kBeside, plan.terrain.row - kBeside,
                                plan.terrain.cols + 2 * kBeside, plan.terrain.rows + 2 * kBeside},
                               source.window());
   plan.terrain = with_room(plan.terrain, source);
-  // Of a cell: the posterior's two values, bits of all and of one observer, a count, what each is asked
+  // Of a cell: the posterior's values, bits of all and of one observer, a count, what each is asked
   // about.
-  const std::size_t of_terrain = 2 * sizeof(float) + 3 * sizeof(std::uint16_t) + posts.size();
+  const std::size_t of_terrain = 5 * sizeof(float) + 3 * sizeof(std::uint16_t) + posts.size();
   const std::size_t of_canvas = 2 * sizeof(float) + 1;
   MemoryBudget(options.memory_budget)
       .require(LoadedTerrain::memory(plan.terrain, model, options).peak + plan.terrain.cells() * of_terrain +
@@ -118,7 +118,8 @@ class Counting {
               terrain.scene().error,
               terrain.window().row,
               terrain.window().col,
-              options.seed},
+              options.seed,
+              terrain.scene().error.surface ? &posterior_.rises : nullptr},
         realisations_(options.realisations),
         workers_(workers) {
     const Window& window = terrain.window();

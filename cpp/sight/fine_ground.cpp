@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::int64_t kDrawsOfSample = 8;
-constexpr std::uint64_t kOtherDraws = 0x66696e65;  // than those of the nodes
+constexpr std::uint64_t kOtherDraws = 0x66696e65, kCrossingDraws = 0x63726f73;  // than those of the nodes
 
 SIGHTBOUND_VECTOR
 void draw_middle(const DrawKey& key, std::uint32_t first, const Lanes& a, const Lanes& b, float spread,
@@ -35,6 +35,24 @@ void raise_to(const Lanes& ground, const Lanes& eye, float per_s, float drop, La
 void raise_horizon(const RayPlace& at, const RaySlopes& slopes, Lanes& horizon) {
   raise_to(at.ground, slopes.eye, static_cast<float>(1 / at.s), static_cast<float>(slopes.per_2r * at.s),
            horizon);
+}
+
+DrawKey FineGround::key_of(const RayPlace& place, std::uint64_t kind) const {
+  const double row = transposed_ ? place.major : place.minor, col = transposed_ ? place.minor : place.major;
+  const auto eighth = [](double x, std::int64_t base) {
+    return static_cast<std::int64_t>(std::floor(static_cast<double>(kDrawsOfSample) * x)) +
+           kDrawsOfSample * base;
+  };
+  return draw_key(terrain_.seed ^ kind, eighth(row, terrain_.row + base_row_),
+                  eighth(col, terrain_.col + base_col_));
+}
+
+void FineGround::depart(RayPlace& place, double part, double spacing_m) const {
+  const double row = transposed_ ? place.major : place.minor, col = transposed_ ? place.minor : place.major;
+  const auto spread_there =
+      static_cast<float>(spread(row, col, 0.5 * spacing_m) * std::sqrt(4 * part * (1 - part)));
+  const Lanes line = place.ground;
+  draw_middle(key_of(place, kCrossingDraws), first_, line, line, spread_there, place.ground);
 }
 
 void FineGround::raise(const RayPlace& a, const RayPlace& b, int depth, const RaySlopes& slopes,
@@ -65,7 +83,15 @@ float FineGround::spread(double row, double col, double half_m) const {
   };
   const double amplitude = terrain_.error.amplitude.at(nearest(row, base_row_, terrain_.mean.rows()),
                                                        nearest(col, base_col_, terrain_.mean.cols()));
-  return amplitude > 0 ? static_cast<float>(amplitude * terrain_.error.profile(half_m, amplitude)) : 0.0f;
+  if (amplitude <= 0) return 0;
+  const ErrorField& error = terrain_.error;
+  if (!error.surface || !terrain_.rises)
+    return static_cast<float>(amplitude * error.profile(half_m, amplitude));
+  // Self-affine: the side of a cell in small, with both ends and the ground beside it known.
+  const double unit = amplitude * error.plain_per_amplitude() * error.surface->points;
+  const double side = 0.5 * (error.surface->row_edge.spread + error.surface->col_edge.spread);
+  return static_cast<float>(unit * side *
+                            std::pow(half_m / error.profile.half_spacing_m, error.profile.exponent));
 }
 
 }  // namespace sightbound

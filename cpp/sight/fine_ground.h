@@ -41,7 +41,12 @@ class FineGround {
   // middles of the halves ...
   void raise(const RayPlace& a, const RayPlace& b, int depth, const RaySlopes&, Lanes& horizon) const;
 
+  // Ground taken from two nodes half a cell apart, a share `part` of the way from the first: what it may
+  // depart from the line between them.
+  void depart(RayPlace& place, double part, double spacing_m) const;
+
  private:
+  DrawKey key_of(const RayPlace&, std::uint64_t kind) const;
   float spread(double row, double col, double half_m) const;
 
   const OpenTerrain& terrain_;

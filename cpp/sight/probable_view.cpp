@@ -146,6 +146,7 @@ class ProbableView::March {
     const int n = static_cast<int>(std::floor(2 * next_[i])), beside = std::min(n + 1, 2 * last_minor_);
     RayPlace place{major, next_[i], ray.path.distance(step), {}};
     cross(nodes[n], nodes[beside], static_cast<float>(2 * next_[i] - n), place.ground);
+    fine_.depart(place, 2 * next_[i] - n, view_.terrain_.error.larger_side_m / 2);
     const RaySlopes slopes{eye_, ray.per_2r};
     if (steps_ <= kNearSteps) {
       const int depth = steps_ <= kNearestSteps ? kDepthNearest : kDepthNear;
