@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -130,6 +131,16 @@ void bind_check(py::module_& m) {
             });
       },
       "dem"_a, "reference"_a, "samples_or_means"_a, "correct_shift"_a, "progress"_a);
+  m.def(
+      "content_seen",
+      [](const std::shared_ptr<DemSource>& dem, const std::shared_ptr<DemSource>& reference,
+         py::object progress) {
+        const auto seen = ProgressBridge(std::move(progress)).run([&](Progress& p) {
+          return content_seen(*dem, *reference, p);
+        });
+        return seen ? std::optional(name_of(*seen)) : std::nullopt;
+      },
+      "dem"_a, "reference"_a, "progress"_a);
   m.def("with_check", &with_check, "model"_a, "check"_a);
   m.def(
       "write_corrected_dem",

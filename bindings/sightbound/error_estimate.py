@@ -50,7 +50,8 @@ def estimate_error(
     Args:
         dem: the DEM; some blocks spread over it are read.
         samples_or_means: what a cell holds, "samples" (the height of its middle) or "means" (the mean over it); "auto":
-            whichever the growth of residuals looks like. (An ErrorModel here is taken as `error_model`.)
+            with which the reference agrees better, else what the growth of residuals looks like. (An ErrorModel here is
+            taken as `error_model`.)
         checkpoints: the path of points with elevations (any vector file, any CRS), or an array [n, 3] of x, y in the
             DEM's CRS and z in metres. At least ten.
         reference: a better DEM of at least a part, any CRS and cell size: a Dem or a path.
@@ -83,7 +84,12 @@ def estimate_error(
     learnt = given._core.copy()
     if samples_or_means != "auto":
         learnt.samples_or_means = samples_or_means
-    parts = _Parts(progress, 1 + (checkpoints is not None) + (reference is not None))
+    parts = _Parts(progress, 1 + (checkpoints is not None) + 2 * (reference is not None))
+    better = reference if isinstance(reference, Dem) or reference is None else read_dem(reference)
+    if better is not None:
+        seen = core.content_seen(source, core_dem(better), parts.next())
+        if learnt.samples_or_means is None:
+            learnt.samples_or_means = seen
     found = core.estimate(source, learnt.samples_or_means, parts.next())
     report: dict[str, Any] = {
         "growth_exponent": found.growth_exponent,
@@ -98,11 +104,11 @@ def estimate_error(
         "self_check": {name: getattr(found.self_check, name) for name in _QUANTILES},
         "warnings": list(found.warnings),
     }
-    if reference is not None:
-        other = reference if isinstance(reference, Dem) else read_dem(reference)
-        check = core.check_with_reference(
-            source, core_dem(other), found.samples_or_means, bool(correct_shift), parts.next()
-        )
+    if better is not None:
+        content = found.samples_or_means
+        if seen is not None and seen != content:
+            report["warnings"].append(f"The reference agrees better with a DEM whose cells hold {seen}, not {content}.")
+        check = core.check_with_reference(source, core_dem(better), content, bool(correct_shift), parts.next())
         learnt = core.with_check(learnt, check)
         report["reference"] = check.details(source)
     if checkpoints is not None:
@@ -110,7 +116,7 @@ def estimate_error(
         completed = core.with_estimate(given._on(dem), found)
         check = core.check_with_points(source, completed, places, bool(correct_shift), parts.next())
         report["checkpoints"] = check.details(source)
-        if reference is not None and given.shared_bias == 0:
+        if better is not None and given.shared_bias == 0:
             learnt.shared_bias = report["checkpoints"]["median"]
         learnt = core.with_check(learnt, check)
         report["warnings"] += notes

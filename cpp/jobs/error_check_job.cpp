@@ -21,15 +21,20 @@ constexpr double kFarthestCells = 20;  // a shift beyond is no shift but another
 constexpr double kUsualRounds = 6;
 
 template <class Comparison>
-Xy look_for_shift(const Comparison& comparison, bool correct, ErrorCheck& out, Progress& progress) {
+std::optional<HorizontalShift> shift_of(const Comparison& comparison, Progress& progress) {
   const CellSize& cell = comparison.plan().middle_cell();
   const double side = std::min(cell.col_m, cell.row_m);
-  progress.begin(0.5, kUsualRounds);
   const auto compared = [&](Xy at) {
     progress.advance(1);
     return comparison.for_shift(at);
   };
-  out.shift = find_shift(compared, side, kFarthestCells * side);
+  return find_shift(compared, side, kFarthestCells * side);
+}
+
+template <class Comparison>
+Xy look_for_shift(const Comparison& comparison, bool correct, ErrorCheck& out, Progress& progress) {
+  progress.begin(0.5, kUsualRounds);
+  out.shift = shift_of(comparison, progress);
   progress.begin(0.5, 1);
   if (!out.shift) {
     out.warnings.push_back(
@@ -124,6 +129,24 @@ ErrorCheck check_with_reference(const DemSource& source, const DemSource& refere
   tell_of_rest(out);
   progress.finish();
   return out;
+}
+
+std::optional<CellContent> content_seen(const DemSource& source, const DemSource& reference,
+                                        Progress& progress) {
+  constexpr double kClear = 0.9;
+  const Workers workers(0);
+  const Georeference georeference = georeference_of(source);
+  const auto disagreement = [&](CellContent content) {
+    const ReferenceComparison comparison(source, georeference, reference, content, workers, progress);
+    progress.begin(0.5, kUsualRounds);
+    const std::optional<HorizontalShift> shift = shift_of(comparison, progress);
+    return shift ? shift->nmad_after : 0;
+  };
+  const double samples = disagreement(CellContent::kSamples), means = disagreement(CellContent::kMeans);
+  progress.finish();
+  if (means < kClear * samples) return CellContent::kMeans;
+  if (samples < kClear * means) return CellContent::kSamples;
+  return {};
 }
 
 MapShift on_map(const HorizontalShift& shift, const DemSource& source) {

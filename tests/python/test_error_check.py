@@ -271,6 +271,9 @@ def test_means_are_compared_with_means():
     as_means = sb.estimate_error(dem, "means", reference=truth_of(z))
     as_samples = sb.estimate_error(dem, "samples", reference=truth_of(z))
     assert as_means.samples_or_means == "means" and as_samples.samples_or_means == "samples"
+    assert sb.estimate_error(dem, reference=truth_of(z)).samples_or_means == "means"
+    assert sb.estimate_error(dem_of(z), reference=truth_of(z)).samples_or_means == "samples"
+    assert any("hold means, not samples" in note for note in as_samples.report["warnings"])
     found = [model.report["reference"]["sd"] for model in (as_means, as_samples)]
     assert found[0] < 0.1 * found[1]
     # Means plane off what is convex: the truth stands above them there.
