@@ -234,8 +234,9 @@ class ErrorModel:
 
     @property
     def report(self) -> dict[str, Any]:
-        """What estimate_error() found: growth_exponent, typical_sigma and rounding (metres), warnings; of a product its
-        title and source (product_error()). Else empty."""
+        """What estimate_error() found: growth_exponent, typical_sigma, rounding, rms_of_spacing (metres) and more; of
+        checkpoints and reference under these names; warnings. Of a product its title and source (product_error()).
+        Else empty."""
         return dict(self._report)
 
     def __repr__(self) -> str:

@@ -10,7 +10,8 @@ from qgis.core import (
     QgsProcessingParameterDefinition,
 )
 
-VISIBILITY = ("confidenceviewshed", "probableviewshed", "errorsurfaces", "lineofsightprofile")
+VISIBILITY = ("confidenceviewshed", "probableviewshed", "errorsurfaces", "estimateerror", "lineofsightprofile")
+WITH_ERROR_BLOCK = tuple(name for name in VISIBILITY if name != "estimateerror")
 VOLUME = ("builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster")
 SIMPLIFICATION = ("demtotin", "simplifytin", "verifytin")
 ALGORITHMS = VISIBILITY + VOLUME + SIMPLIFICATION
@@ -66,7 +67,7 @@ def test_error_block_is_the_same_everywhere(provider):
         block = [algorithm.parameterDefinition(name) for name in ERROR_BLOCK]
         return [(one.type(), one.description(), one.defaultValue(), one.flags(), one.help()) for one in block]
 
-    blocks = [described(provider.algorithm(name)) for name in (*VISIBILITY, "builderrorvolume", "demtotin", "simplifytin")]
+    blocks = [described(provider.algorithm(name)) for name in (*WITH_ERROR_BLOCK, "builderrorvolume", "demtotin", "simplifytin")]
     assert all(block == blocks[0] for block in blocks)
 
 
