@@ -179,5 +179,5 @@ class EstimateError(SightboundAlgorithm):
         if report:
             results["OUTPUT_HTML"] = self.parameterAsFileOutput(parameters, "OUTPUT_HTML", context)
             with core_errors("OUTPUT_HTML"):
-                write_report(Path(results["OUTPUT_HTML"]), model, sightbound.error_quantile, maps.between)
+                write_report(Path(results["OUTPUT_HTML"]), model, sightbound.two_sided_quantile, maps.between)
         return results
