@@ -12,6 +12,7 @@
 #include "error_model/products.h"
 #include "jobs/error_surfaces_job.h"
 #include "jobs/option_names.h"
+#include "jobs/probable_viewshed_job.h"
 #include "jobs/volume_viewshed_job.h"
 
 namespace sightbound::python {
@@ -35,6 +36,7 @@ py::dict defaults() {
   const ViewshedOptions options;
   const ErrorModel model;
   const VolumeSightOptions sight;
+  const ProbableOptions probable;
   return py::dict(
       "observer_height"_a = observer.height, "target_height"_a = observer.target_height,
       "min_distance"_a = observer.min_distance, "max_distance"_a = finite_or_none(observer.max_distance),
@@ -49,7 +51,9 @@ py::dict defaults() {
       "vertical_unit"_a = "auto", "band"_a = 1, "terrain_table"_a = default_terrain_table(),
       "error_products"_a = product_names(), "target_spacing"_a = sight.targets.spacing_m,
       "target_ceiling"_a = sight.targets.ceiling_m, "seen_from"_a = name_of(sight.seen_from),
-      "holds_for"_a = name_of(sight.holds_for), "most_lines"_a = sight.most_lines);
+      "holds_for"_a = name_of(sight.holds_for), "most_lines"_a = sight.most_lines,
+      "realisations"_a = probable.realisations, "precision"_a = probable.precision,
+      "method"_a = name_of(probable.method), "refinement"_a = probable.refinement, "seed"_a = probable.seed);
 }
 
 }  // namespace

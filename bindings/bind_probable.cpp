@@ -8,6 +8,7 @@
 #include "progress_bridge.h"
 #include <pybind11/stl.h>
 
+#include "jobs/option_names.h"
 #include "jobs/probable_viewshed_job.h"
 #include "jobs/result_files.h"
 
@@ -25,6 +26,9 @@ void bind_options(py::module_& m) {
       .def_readwrite("precision", &ProbableOptions::precision)
       .def_readwrite("refinement", &ProbableOptions::refinement)
       .def_readwrite("heights", &ProbableOptions::heights)
+      .def_property(
+          "method", [](const ProbableOptions& self) { return name_of(self.method); },
+          [](ProbableOptions& self, const std::string& name) { self.method = terrains_from(name); })
       .def_readwrite("seed", &ProbableOptions::seed)
       .def_readwrite("extent", &ProbableOptions::extent)
       .def_readwrite("threads", &ProbableOptions::threads)
@@ -71,6 +75,7 @@ void bind_result(py::module_& m) {
       .def_readwrite("probability", &ProbableFiles::probability)
       .def_readwrite("standard_error", &ProbableFiles::standard_error)
       .def_readwrite("verdict", &ProbableFiles::verdict)
+      .def_readwrite("at_heights", &ProbableFiles::at_heights)
       .def_readwrite("creation_options", &ProbableFiles::creation_options);
 }
 

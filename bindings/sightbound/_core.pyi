@@ -391,6 +391,10 @@ class ProbableOptions:
     refraction: float
     curvature: bool
     realisations: int
+    precision: float
+    method: str
+    refinement: int
+    heights: list[float]
     seed: int
     extent: Extent | None
     threads: int
@@ -403,6 +407,9 @@ class ProbableViewshed:
     @property
     def standard_error(self) -> _Floats: ...
     @property
+    def realisations(self) -> npt.NDArray[np.uint16]: ...
+    def at_height(self, n: int, /) -> _Floats: ...
+    @property
     def verdict(self) -> npt.NDArray[np.uint8]: ...
     @property
     def geotransform(self) -> tuple[float, ...]: ...
@@ -414,6 +421,7 @@ class ProbableFiles:
     probability: str
     standard_error: str
     verdict: str
+    at_heights: str
     creation_options: list[str]
     def __init__(self) -> None: ...
 

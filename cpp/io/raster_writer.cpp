@@ -11,6 +11,7 @@
 #include <deque>
 #include <limits>
 #include <set>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -103,10 +104,15 @@ void describe(GDALDataset& dataset, double nodata, const Geotransform& geotransf
     dataset.SetSpatialRef(&crs);
   }
   for (const auto& [key, value] : metadata.items) dataset.SetMetadataItem(key.c_str(), value.c_str());
-  GDALRasterBand* band = dataset.GetRasterBand(1);
-  band->SetNoDataValue(nodata);
-  if (!metadata.description.empty()) band->SetDescription(metadata.description.c_str());
-  if (!metadata.unit.empty()) band->SetUnitType(metadata.unit.c_str());
+  for (int n = 0; n < dataset.GetRasterCount(); ++n) {
+    GDALRasterBand* band = dataset.GetRasterBand(n + 1);
+    const bool is_alone = metadata.band_descriptions.empty();
+    const std::string& description =
+        is_alone ? metadata.description : metadata.band_descriptions[static_cast<std::size_t>(n)];
+    band->SetNoDataValue(nodata);
+    if (!description.empty()) band->SetDescription(description.c_str());
+    if (!metadata.unit.empty()) band->SetUnitType(metadata.unit.c_str());
+  }
 }
 
 // Copies a block out of the grid; what lies beyond the grid repeats its edge, which compresses best.
@@ -140,36 +146,47 @@ void write_blocks(const Grid<T>& grid, GDALRasterBand& band, const gdal::ErrorLo
   }
 }
 
-// Writes under the temporary name of `file`.
+// Writes under the temporary name of `file`, a band each.
 template <class T>
-void write(const WholeFile& file, const std::string& path, const Grid<T>& grid,
+void write(const WholeFile& file, const std::string& path, std::span<const Grid<T>> bands,
            const Geotransform& geotransform, const std::string& crs_wkt, const RasterMetadata& metadata,
            int threads, Progress& progress) {
-  if (grid.empty()) throw InvalidInput("'" + path + "': there are no cells to write.");
+  if (bands.empty() || bands.front().empty())
+    throw InvalidInput("'" + path + "': there are no cells to write.");
   check_extension(path);
   gdal::register_drivers();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   if (driver == nullptr) throw IoError("This GDAL cannot write GeoTIFF: '" + path + "' is not written.");
-  const CPLStringList options = creation_options(*driver, metadata, threads);
+  CPLStringList options = creation_options(*driver, metadata, threads);
+  if (bands.size() > 1 && options.FetchNameValue("INTERLEAVE") == nullptr)
+    options.SetNameValue("INTERLEAVE", "BAND");
 
   const gdal::ErrorLog log;
-  GDALDatasetUniquePtr dataset(driver->Create(file.temporary().c_str(), grid.cols(), grid.rows(), 1,
+  GDALDatasetUniquePtr dataset(driver->Create(file.temporary().c_str(), bands.front().cols(),
+                                              bands.front().rows(), static_cast<int>(bands.size()),
                                               Stored<T>::kType, options.List()));
   if (!dataset) fail(path, log);
   describe(*dataset, Stored<T>::kNodata, geotransform, crs_wkt, metadata);
   if (log.failed()) fail(path, log);
-  write_blocks(grid, *dataset->GetRasterBand(1), log, path, progress);
+  for (std::size_t n = 0; n < bands.size(); ++n)
+    write_blocks(bands[n], *dataset->GetRasterBand(static_cast<int>(n) + 1), log, path, progress);
   dataset.reset();
   if (log.failed()) fail(path, log);  // a full disk may show only when the last blocks are flushed
   progress.check();
 }
 
 template <class T>
+std::span<const Grid<T>> bands_of(const Grid<T>& grid) {
+  return {&grid, 1};
+}
+std::span<const Grid<float>> bands_of(const std::vector<Grid<float>>& grids) { return grids; }
+
+template <class T>
 void write_and_keep(const std::string& path, const Grid<T>& grid, const Geotransform& geotransform,
                     const std::string& crs_wkt, const RasterMetadata& metadata, int threads,
                     Progress& progress) {
   WholeFile file(path);
-  write(file, path, grid, geotransform, crs_wkt, metadata, threads, progress);
+  write(file, path, bands_of(grid), geotransform, crs_wkt, metadata, threads, progress);
   file.keep();
 }
 
@@ -209,8 +226,10 @@ void write_rasters(const std::vector<RasterOutput>& outputs, const Geotransform&
     const WholeFile& file = files.emplace_back(output.path);
     std::visit(
         [&](const auto* grid) {
-          progress.begin(1.0 / static_cast<double>(outputs.size()), static_cast<double>(grid->size()));
-          write(file, output.path, *grid, geotransform, crs_wkt, output.metadata, threads, progress);
+          const auto bands = bands_of(*grid);
+          const std::size_t cells = bands.empty() ? 0 : bands.size() * bands.front().size();
+          progress.begin(1.0 / static_cast<double>(outputs.size()), static_cast<double>(cells));
+          write(file, output.path, bands, geotransform, crs_wkt, output.metadata, threads, progress);
         },
         output.grid);
   }

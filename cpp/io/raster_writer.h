@@ -20,6 +20,7 @@ struct RasterMetadata {
   std::map<std::string, std::string> items;   // dataset metadata, keys SIGHTBOUND_...
   std::vector<std::string> creation_options;  // KEY=VALUE of the GTiff driver; they win over ours (tiled,
                                               // compressed, BigTIFF when needed)
+  std::vector<std::string> band_descriptions = {};  // where there are several
 };
 
 // GeoTIFF (.tif or .tiff, or no extension); nodata NaN / 255 / 4294967295. The file appears under its name
@@ -36,7 +37,9 @@ void write_raster(const std::string& path, const Grid<std::uint32_t>&, const Geo
 
 struct RasterOutput {
   std::string path;
-  std::variant<const Grid<float>*, const Grid<std::uint8_t>*, const Grid<std::uint32_t>*> grid;
+  std::variant<const Grid<float>*, const Grid<std::uint8_t>*, const Grid<std::uint32_t>*,
+               const std::vector<Grid<float>>*>  // a band each, of one size
+      grid;
   RasterMetadata metadata;
 };
 // All files appear together once the last is whole; a failure leaves none of them. Begins `progress` for the

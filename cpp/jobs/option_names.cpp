@@ -38,6 +38,10 @@ std::string name_of(HoldsFor holds) {
   return holds == HoldsFor::kPlace ? "place" : holds == HoldsFor::kVoxel ? "voxel" : "target";
 }
 
+std::string name_of(Terrains terrains) {
+  return terrains == Terrains::kConditional ? "conditional" : "perturb";
+}
+
 Stand stand_from(const std::string& name) {
   return option_from("stand", name, {Stand::kModel, Stand::kGround});
 }
@@ -56,6 +60,10 @@ SeenFrom seen_from(const std::string& name) {
 
 HoldsFor holds_for(const std::string& name) {
   return option_from("holds_for", name, {HoldsFor::kPlace, HoldsFor::kVoxel, HoldsFor::kTarget});
+}
+
+Terrains terrains_from(const std::string& name) {
+  return option_from("method", name, {Terrains::kConditional, Terrains::kPerturb});
 }
 
 }  // namespace sightbound

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "jobs/probable_viewshed_job.h"
 #include "jobs/viewshed_job.h"
 #include "sight/volume_viewshed.h"
 
@@ -14,6 +15,7 @@ std::string name_of(Combine);          // "best", "worst"
 std::string name_of(HeightReference);  // "ground", "absolute"
 std::string name_of(SeenFrom);         // "any", "all"
 std::string name_of(HoldsFor);         // "place", "voxel", "target"
+std::string name_of(Terrains);         // "conditional", "perturb"
 
 // Throw InvalidInput that names the option, the word and those allowed.
 Stand stand_from(const std::string& name);
@@ -21,5 +23,6 @@ Combine combine_from(const std::string& name);
 HeightReference height_reference_from(const std::string& name);
 SeenFrom seen_from(const std::string& name);
 HoldsFor holds_for(const std::string& name);
+Terrains terrains_from(const std::string& name);
 
 }  // namespace sightbound

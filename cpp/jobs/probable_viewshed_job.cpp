@@ -147,22 +147,35 @@ Grid<std::uint8_t> asked_of(const std::vector<Post>& posts, const LoadedTerrain&
   return asked;
 }
 
-// All terrains that could lie behind the DEM.
+// The terrains that are drawn.
 class Behind {
  public:
   Behind(const LoadedTerrain& terrain, const ProbableOptions& options, const Workers& workers,
          Progress& progress)
-      : posterior_(posterior(terrain.scene().heights, terrain.scene().error, workers, progress)),
+      : is_perturbed_(options.method == Terrains::kPerturb),
+        nothing_between_(between_samples(terrain.scene().error)),
+        posterior_(is_perturbed_
+                       ? Posterior()
+                       : posterior(terrain.scene().heights, terrain.scene().error, workers, progress)),
         open_{posterior_.mean.empty() ? terrain.scene().heights : posterior_.mean,
-              posterior_.spread,
-              terrain.scene().error,
+              is_perturbed_ ? terrain.scene().error.sampling : posterior_.spread,
+              is_perturbed_ ? nothing_between_ : terrain.scene().error,
               terrain.window().row,
               terrain.window().col,
               options.seed,
-              terrain.scene().error.surface ? &posterior_.rises : nullptr} {}
+              terrain.scene().error.surface && !is_perturbed_ ? &posterior_.rises : nullptr} {}
   const OpenTerrain& open() const { return open_; }
 
  private:
+  static ErrorField between_samples(const ErrorField& error) {
+    ErrorField nothing;
+    nothing.cell_sizes = error.cell_sizes;
+    nothing.larger_side_m = error.larger_side_m;
+    return nothing;
+  }
+
+  const bool is_perturbed_;
+  const ErrorField nothing_between_;
   const Posterior posterior_;
   const OpenTerrain open_;
 };
@@ -244,6 +257,15 @@ void place_eyes(const std::vector<Post>& posts, const LoadedTerrain& terrain, Pr
   }
 }
 
+void warn_of_one_terrain(const OpenTerrain& open, const ProbableOptions& options, ProbableReport& report) {
+  if (options.method != Terrains::kPerturb || !open.spread.is_constant() || open.spread.constant() > 0)
+    return;
+  report.warnings.push_back(
+      "The error model holds no measurement error, so there is nothing to add: all perturbed terrains are "
+      "the DEM. "
+      "Give vertical_rmse.");
+}
+
 // An observer sees what he stands on.
 void see_own_cells(const std::vector<Post>& posts, const Window& window, CellsInDoubt& cells) {
   for (const Post& post : posts) {
@@ -279,6 +301,7 @@ ProbableViewshed run_probable_viewshed(const DemSource& source, const std::vecto
   place_eyes(posts, terrain, report);
   const Grid<std::uint8_t> asked = asked_of(posts, terrain, workers, progress);
   const Behind behind(terrain, options, workers, progress);
+  warn_of_one_terrain(behind.open(), options, report);
   std::vector<ProbableView> views = views_of(posts, terrain, behind.open(), options);
   const EarlyStop stop(options.realisations, options.confidence, options.precision);
   CellsInDoubt cells(plan.terrain.rows, plan.terrain.cols, static_cast<int>(options.heights.size()) + 1);

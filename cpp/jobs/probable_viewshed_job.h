@@ -11,6 +11,16 @@
 
 namespace sightbound {
 
+// What is drawn.
+enum class Terrains {
+  kConditional,  // terrains that agree with the DEM as far as it can be trusted, and rise and fall between
+                 // its samples
+  // The DEM with an error of sigma_s added to each sample (Fisher 1991), and straight between them: the
+  // literature's. The DEM has its error once already, so that ground is drawn too rough at the samples, and
+  // nothing hides between them.
+  kPerturb
+};
+
 struct ProbableOptions {
   double confidence = 0.95;
   double refraction = 0.13;
@@ -19,6 +29,7 @@ struct ProbableOptions {
   // A cell is left when the interval of its probability is no wider than twice this, and its claim is clear
   // (early_stop.h); 0 = never.
   double precision = 0.03;
+  Terrains method = Terrains::kConditional;
   int refinement = 1;           // 0: ground has nodes half a cell apart; 1: finer ones near eye and target
   std::vector<double> heights;  // of targets above ground, metres, besides the observers' own; at most 15
   std::uint64_t seed = 1;

@@ -80,6 +80,14 @@ class Outputs {
     outputs_.push_back({path, &grid, std::move(metadata)});
   }
 
+  void add(const std::string& path, const std::vector<Grid<float>>& grids, const std::string& quantity,
+           std::vector<std::string> bands) {
+    if (path.empty()) return;
+    RasterMetadata metadata{quantity, "", items_, creation_options_, std::move(bands)};
+    metadata.items["SIGHTBOUND_QUANTITY"] = quantity;
+    outputs_.push_back({path, &grids, std::move(metadata)});
+  }
+
   void write(const Geotransform& geotransform, const std::string& crs_wkt, int threads,
              Progress& progress) const {
     if (outputs_.empty()) throw InvalidInput("There is nothing to write: name at least one output file.");
@@ -132,13 +140,26 @@ void write_probable(const ProbableViewshed& result, const std::vector<Observer>&
                                  {"SIGHTBOUND_CURVATURE", text(options.curvature)},
                                  {"SIGHTBOUND_REFRACTION", text(options.refraction)},
                                  {"SIGHTBOUND_REALISATIONS", std::to_string(options.realisations)},
+                                 {"SIGHTBOUND_PRECISION", text(options.precision)},
+                                 {"SIGHTBOUND_METHOD", name_of(options.method)},
+                                 {"SIGHTBOUND_REFINEMENT", std::to_string(options.refinement)},
                                  {"SIGHTBOUND_SEED", std::to_string(options.seed)}},
                                 result.report.warnings),
                   files.creation_options);
-  outputs.add(files.probability, result.probability,
-              "probability that an observer sees the cell, whole line (conditional simulation)");
+  outputs.add(
+      files.probability, result.probability,
+      "probability that an observer sees the cell, whole line (" +
+          std::string(options.method == Terrains::kConditional ? "conditional simulation" : "perturbed DEM") +
+          ")");
   outputs.add(files.standard_error, result.standard_error, "standard error of the probability");
   outputs.add(files.verdict, result.verdict, "verdict: 0 hidden, 1 uncertain, 2 visible");
+  if (!files.at_heights.empty() && result.at_heights.empty())
+    throw InvalidInput("'" + files.at_heights + "' cannot be written: no heights were given.");
+  std::vector<std::string> bands;
+  for (const double height : result.report.heights)
+    bands.push_back("probability that a target " + text(height) + " m above ground is seen");
+  outputs.add(files.at_heights, result.at_heights, "probability that a target of a height is seen",
+              std::move(bands));
   outputs.write(result.geotransform, result.crs_wkt, options.threads, progress);
 }
 

@@ -23,6 +23,7 @@ struct ViewshedFiles {
 };
 struct ProbableFiles {
   std::string probability, standard_error, verdict;
+  std::string at_heights;  // a band for each of the heights
   std::vector<std::string> creation_options;
 };
 struct ErrorSurfaceFiles {

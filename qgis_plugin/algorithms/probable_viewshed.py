@@ -5,12 +5,14 @@ from qgis.core import (
     QgsProcessingOutputNumber,
     QgsProcessingOutputString,
     QgsProcessingParameterRasterDestination,
+    QgsProcessingParameterString,
 )
 
 from .. import observers
 from .. import parameters as blocks
+from ..defaults import default
 from ..error_block import check_error_block, log_error_model, read_error_block
-from ..errors import core_errors
+from ..errors import bad_input, core_errors
 from ..feedback import Progress
 from ..rasters import creation_options, open_dem, read_extent, read_raster
 from ..styling import style_when_loaded
@@ -23,13 +25,15 @@ RASTERS = (
     ("OUTPUT", "Probability", "probability", "confidence", 0.0, False),
     ("OUTPUT_VERDICT", "Verdict", "verdict", "verdict", 0.0, True),
     ("OUTPUT_ERROR", "Standard error of the probability", "standard_error", "sigma", 1.0, True),
+    ("OUTPUT_HEIGHTS", "Probability for the further heights, a band each", "at_heights", "confidence", 0.0, True),
 )
-DRAWS, SEED = 1000, 1  # as of sightbound.probable_viewshed
+SHOWN = ("OUTPUT", "OUTPUT_VERDICT")  # unless the user says otherwise
 NUMBERS = (
     ("AREA_EXPECTED", "Visible area to be expected (m²)", "expected_visible_m2"),
     ("AREA_VISIBLE", "Area visible (m²)", "visible_m2"),
     ("AREA_UNCERTAIN", "Area uncertain (m²)", "uncertain_m2"),
     ("AREA_HIDDEN", "Area hidden (m²)", "hidden_m2"),
+    ("LARGEST_ERROR", "Largest standard error of a probability", "largest_standard_error"),
 )
 
 
@@ -53,23 +57,40 @@ class ProbableViewshed(SightboundAlgorithm):
     )
 
     def initAlgorithm(self, configuration=None):
-        draws = blocks.number("REALISATIONS", tr("Number of terrains drawn"), DRAWS, 1, 65535, integer=True)
-        seed = blocks.number("SEED", tr("Seed of the draws"), SEED, 0, None, integer=True)
+        draws = blocks.number(
+            "REALISATIONS", tr("Largest number of terrains drawn"), default("realisations"), 1, 65535, integer=True
+        )
         for parameter in (
             blocks.dem_block()
             + blocks.observers_block()
             + [blocks.confidence_parameter(), draws]
             + blocks.error_block()
             + blocks.limits_block()
-            + [blocks.vertical_unit_parameter(), *blocks.earth_block(), blocks.advanced(seed), blocks.extent_parameter()]
+            + [blocks.vertical_unit_parameter(), *blocks.earth_block(), *self._drawing(), blocks.extent_parameter()]
             + blocks.run_block()
         ):
             self.add(parameter)
         for name, label, _, _, _, optional in RASTERS:
-            self.add(QgsProcessingParameterRasterDestination(name, tr(label)), optional, name != "OUTPUT_ERROR")
+            self.add(QgsProcessingParameterRasterDestination(name, tr(label)), optional, name in SHOWN)
         for name, label, _ in NUMBERS:
             self.addOutput(QgsProcessingOutputNumber(name, tr(label)))
         self.addOutput(QgsProcessingOutputString("ERROR_MODEL_USED", tr("Error model used (JSON)")))
+
+    def _drawing(self):
+        """How terrains are drawn, and when enough of them."""
+        heights = QgsProcessingParameterString(
+            "HEIGHTS", tr("Further target heights, in metres (as: 0.5, 2, 30)"), "", False, True
+        )
+        return [
+            blocks.advanced(parameter)
+            for parameter in (
+                heights,
+                blocks.number("PRECISION", tr("Precision of a probability (0: draw all)"), default("precision"), 0.0, 0.5),
+                blocks.choice("METHOD", tr("Terrains"), ["conditional", "perturb"], default("method")),
+                blocks.number("REFINEMENT", tr("Refinement near eye and target"), default("refinement"), 0, 1, integer=True),
+                blocks.number("SEED", tr("Seed of the draws"), default("seed"), 0, None, integer=True),
+            )
+        ]
 
     def contradiction(self, parameters, context):
         return (
@@ -84,6 +105,7 @@ class ProbableViewshed(SightboundAlgorithm):
         self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
         self.error = read_error_block(self, parameters, context, feedback, self.dem)
         self.extent = read_extent(self, parameters, context, self.dem)
+        self.heights = self._heights(parameters, context)
         self.options = creation_options(self, parameters, context)
 
     def compute(self, sightbound, parameters, context, feedback):
@@ -95,8 +117,12 @@ class ProbableViewshed(SightboundAlgorithm):
             confidence=self.parameterAsDouble(parameters, "CONFIDENCE", context),
             refraction=self.parameterAsDouble(parameters, "REFRACTION", context),
             curvature=self.parameterAsBoolean(parameters, "CURVATURE", context),
-            realisations=self._whole(parameters, "REALISATIONS", DRAWS, context),
-            seed=self._whole(parameters, "SEED", SEED, context),
+            realisations=self._whole(parameters, "REALISATIONS", context),
+            seed=self._whole(parameters, "SEED", context),
+            precision=self._number(parameters, "PRECISION", context),
+            heights=self.heights,
+            method=word(self, parameters, "METHOD", context),
+            refinement=self._whole(parameters, "REFINEMENT", context),
             extent=self.extent,
             threads=self.threads(parameters, context),
             progress=Progress(feedback, 0.0, 95.0),
@@ -112,9 +138,23 @@ class ProbableViewshed(SightboundAlgorithm):
         results["ERROR_MODEL_USED"] = report["error_model"]
         return results
 
-    def _whole(self, parameters, name, default, context):
+    def _number(self, parameters, name, context):
         number = number_or_none(self, parameters, name, context)
-        return default if number is None else int(number)
+        return self.parameterDefinition(name).defaultValue() if number is None else number
+
+    def _whole(self, parameters, name, context):
+        return int(self._number(parameters, name, context))
+
+    def _heights(self, parameters, context):
+        """Numbers between commas or semicolons."""
+        text = self.parameterAsString(parameters, "HEIGHTS", context) or ""
+        try:
+            heights = [float(one) for one in text.replace(";", ",").split(",") if one.strip()]
+        except ValueError:
+            raise bad_input("HEIGHTS", tr("is “{}”; give metres above ground, as 0.5, 2, 30.").format(text)) from None
+        if given(parameters, "OUTPUT_HEIGHTS") and not heights:
+            raise bad_input("OUTPUT_HEIGHTS", tr("needs HEIGHTS: give at least one."))
+        return heights
 
     def _write(self, result, parameters, context, feedback):
         wanted = [row for row in RASTERS if given(parameters, row[0])]

@@ -45,7 +45,7 @@ def place(row, col, cell=CELL):
 
 
 def test_arrays_and_report(dem):
-    found = sb.probable_viewshed(dem, place(30, 30), 10, realisations=128)
+    found = sb.probable_viewshed(dem, place(30, 30), 10, realisations=128, precision=0)
     assert found.probability.shape == found.verdict.shape == dem.shape
     assert found.probability.min() >= 0 and found.probability.max() == 1 and found.probability[30, 30] == 1
     assert np.allclose(found.standard_error, np.sqrt(found.probability * (1 - found.probability) / 128), atol=1e-6)
@@ -113,6 +113,11 @@ def test_measurement_error_makes_less_sure(dem):
     ({"realisations": 0}, "realisations is 0"),
     ({"realisations": 1.5}, "realisations"),
     ({"seed": -1}, "seed is -1"),
+    ({"precision": 0.6}, "precision is 0.6"),
+    ({"refinement": 2}, "refinement is 2"),
+    ({"method": "guess"}, "method is 'guess'"),
+    ({"heights": [1, -2]}, "heights has -2"),
+    ({"heights": range(16)}, "heights has 16"),
     ({"confidence": 1}, "confidence"),
     ({"max_distance": -1}, "max_distance"),
     ({"threads": 0}, "threads"),
@@ -122,16 +127,72 @@ def test_wrong_arguments_are_named(dem, arguments, message):
         sb.probable_viewshed(dem, place(30, 30), **arguments)
 
 
+def test_cells_are_left_when_they_are_settled(dem):
+    """Within the precision of what all realisations say, and with the same claims but where these are close to the bound."""
+    early = sb.probable_viewshed(dem, place(30, 30), 5, realisations=2000)
+    whole = sb.probable_viewshed(dem, place(30, 30), 5, realisations=2000, precision=0)
+    assert set(np.unique(whole.realisations)) == {2000} and set(np.unique(early.realisations)) <= {192, 384, 768, 1536, 2000}
+    assert (early.realisations < 2000).mean() > 0.4
+    off = abs(early.probability - whole.probability)
+    assert off.max() <= 0.03 and (off[early.realisations == 2000] == 0).all()
+    claimed = early.verdict != 1
+    assert (early.verdict == whole.verdict)[claimed & (whole.verdict != 1)].all() and claimed.mean() > 0.5
+    error = np.sqrt(early.probability * (1 - early.probability) / early.realisations)
+    assert np.allclose(early.standard_error, error, atol=1e-6)
+    assert early.report["largest_standard_error"] == pytest.approx(early.standard_error.max())
+
+
+def test_further_heights_are_runs_of_their_own(dem):
+    """... on the same terrains, to the byte: and the higher, the more is seen."""
+    heights = [10.0, 0.0, 2.5]
+    found = sb.probable_viewshed(dem, place(30, 30), 5, 1.7, realisations=400, heights=heights)
+    for height in heights:
+        alone = sb.probable_viewshed(dem, place(30, 30), 5, height, realisations=400)
+        assert np.array_equal(found.probability_at(height), alone.probability)
+    plain = sb.probable_viewshed(dem, place(30, 30), 5, 1.7, realisations=400)
+    assert np.array_equal(found.probability, plain.probability) and np.array_equal(found.verdict, plain.verdict)
+    whole = sb.probable_viewshed(dem, place(30, 30), 5, 1.7, realisations=100, heights=heights, precision=0)
+    assert (whole.probability_at(10) >= whole.probability).all() and (whole.probability >= whole.probability_at(0)).all()
+    with pytest.raises(ValueError, match="height is 3"):
+        found.probability_at(3)
+
+
+def test_perturbed_terrains_are_the_dem_with_noise(dem):
+    """By hand: one doubtful sample between two heads 1.7 m high on a plain hides as often as it stands higher."""
+    sigma = np.zeros((21, 41))
+    sigma[10, 20] = 2.0
+    plain = dem_of(np.zeros((21, 41), np.float32))
+    model = sb.ErrorModel(vertical_rmse=sigma, geologic_variation=0)
+    found = sb.probable_viewshed(
+        plain, place(10, 5), error_model=model, target_height=1.7, curvature=False, method="perturb", realisations=4000, precision=0
+    )
+    assert found.probability[10, 35] == pytest.approx(0.802, abs=0.025)  # Phi(1.7 / 2)
+    assert found.probability[3, 35] == 1
+    without = sb.probable_viewshed(dem, place(30, 30), 5, method="perturb", error_model=sb.ErrorModel(0, geologic_variation=0))
+    assert set(np.unique(without.probability)) == {0, 1}
+    assert any("vertical_rmse" in warning for warning in without.report["warnings"])
+
+
+def test_fine_ground_takes_sight(dem):
+    with_it, without = (sb.probable_viewshed(dem, place(30, 30), 1.7, realisations=400, refinement=n) for n in (1, 0))
+    assert with_it.probability.mean() < without.probability.mean()
+
+
 def test_written_rasters_say_how_they_were_made(dem, tmp_path):
-    found = sb.probable_viewshed(dem, place(30, 30), 5, realisations=32, seed=7)
+    found = sb.probable_viewshed(dem, place(30, 30), 5, realisations=32, seed=7, heights=[0.5, 20])
     paths = [str(tmp_path / name) for name in ("p.tif", "e.tif", "v.tif")]
-    found.write(*paths)
+    found.write(*paths, at_heights=tmp_path / "h.tif")
+    bands = gdal.Open(str(tmp_path / "h.tif"))
+    assert np.array_equal(bands.ReadAsArray(), [found.probability_at(0.5), found.probability_at(20)])
+    assert bands.GetRasterBand(2).GetDescription() == "probability that a target 20 m above ground is seen"
     for path, values in zip(paths, (found.probability, found.standard_error, found.verdict)):
         dataset = gdal.Open(path)
         assert np.array_equal(dataset.ReadAsArray(), values)
         assert dataset.GetMetadataItem("SIGHTBOUND_REALISATIONS") == "32" and dataset.GetMetadataItem("SIGHTBOUND_SEED") == "7"
     with pytest.raises(ValueError, match="nothing to write"):
         found.write()
+    with pytest.raises(ValueError, match="no heights were given"):
+        sb.probable_viewshed(dem, place(30, 30), realisations=1).write(at_heights=tmp_path / "n.tif")
 
 
 def test_it_can_be_cancelled(dem):

@@ -60,7 +60,8 @@ TEST_P(ProbableViews, see_the_same_as_when_all_is_drawn) {
   testing::RoughGround ground = testing::rough_ground(kRows, kCols, 0, test.holes);
   testing::vary_error(ground);
   if (test.is_learnt) {
-    ground.error.surface = fractal_surface(0.7, CellContent::kMeans);
+    ground.error.surface =
+        fractal_surface(0.7, test.spread > 0 ? CellContent::kSamples : CellContent::kMeans);
     ground.error.ridge_gain = 0.1;
   }
   ground.error.sampling = SampleField(test.spread);
