@@ -28,8 +28,11 @@ constexpr std::size_t kEnough = 1000;  // places; with fewer, further blocks are
 constexpr std::size_t kFewest = 64;    // places that H may be measured on
 constexpr double kUsualExponent = 1;   // bare earth: median 1.0-1.1 of sixteen lidar terrains
 constexpr double kLeastExponent = 0.1, kLargestExponent = 2;
-constexpr double kMeansFrom = 0.5;  // of the score: as near to means as to samples
-constexpr float kHighest = 1e5f;    // metres; no height on Earth, but a spike or an undeclared nodata value
+// Of the score. What is taken for means by mistake comes out too cautious, not too bold.
+constexpr double kMeansFrom = 0.6;
+constexpr double kLeastOfMeans =
+    0.25;                         // H; if means had to be rougher, it is H that changes with the spacing
+constexpr float kHighest = 1e5f;  // metres; no height on Earth, but a spike or an undeclared nodata value
 
 struct Residuals {
   std::size_t places = 0, near_places = 0;      // with both q; with q = 1
@@ -66,12 +69,28 @@ void add_place(const float* z, std::ptrdiff_t stride, bool far_known, Residuals&
   sums.diagonal += along_diagonal;
 }
 
-void add_block(const Grid<float>& block, Residuals& sums) {
+// Growth is measured on small tiles, each by itself, and then averaged: where terrain is cut off at a coast,
+// or a cliff stands in a plain, the few large steps would else speak for all.
+constexpr int kTile = 32;
+struct Tile {
+  double places, near_ms, far_ms;
+};
+
+void add_block(const Grid<float>& block, Residuals& sums, std::vector<Tile>& tiles) {
   const int rows = block.rows(), cols = block.cols();
-  for (int r = 1; r < rows - 1; ++r) {
-    const bool row_far = r >= 2 && r < rows - 2;
-    for (int c = 1; c < cols - 1; ++c) {
-      add_place(block.row(r) + c, cols, row_far && c >= 2 && c < cols - 2, sums);
+  for (int top = 0; top < rows; top += kTile) {
+    for (int left = 0; left < cols; left += kTile) {
+      const std::size_t places = sums.places;
+      const double near = sums.edge, far = sums.edge_far;
+      for (int r = std::max(top, 1); r < std::min(top + kTile, rows - 1); ++r) {
+        const bool row_far = r >= 2 && r < rows - 2;
+        for (int c = std::max(left, 1); c < std::min(left + kTile, cols - 1); ++c) {
+          add_place(block.row(r) + c, cols, row_far && c >= 2 && c < cols - 2, sums);
+        }
+      }
+      if (sums.places == places) continue;
+      const auto n = static_cast<double>(sums.places - places);
+      tiles.push_back({n, (sums.edge - near) / n, (sums.edge_far - far) / n});
     }
   }
 }
@@ -144,15 +163,20 @@ class Blocks {
 
 // Rounded heights add the same to the residuals of every spacing and hide the growth of what is left. A
 // residual holds the sample's own rounding and half of the sum of two others'.
-double exponent_of(const Residuals& sums, double rounding_m) {
+double exponent_of(const std::vector<Tile>& tiles, double rounding_m, double float_noise) {
   constexpr double kRoundingShare = 1.5, kLeastLeft = 0.1;
-  const double places = static_cast<double>(sums.places), rounding = kRoundingShare * rounding_m * rounding_m;
-  const double near = sums.edge / places, far = sums.edge_far / places;
-  const double left = std::max(near - rounding, kLeastLeft * near);
-  return 0.5 * std::log2(std::max(far - rounding, left) / left);
+  const double rounding = kRoundingShare * rounding_m * rounding_m;
+  double sum = 0, places = 0;
+  for (const Tile& tile : tiles) {
+    if (std::sqrt(tile.near_ms) <= float_noise) continue;  // flat
+    const double left = std::max(tile.near_ms - rounding, kLeastLeft * tile.near_ms);
+    sum += tile.places * 0.5 * std::log2(std::max(tile.far_ms - rounding, left) / left);
+    places += tile.places;
+  }
+  return places > 0 ? sum / places : kUsualExponent;
 }
 
-void judge_growth(const Residuals& sums, Estimate& out) {
+void judge_growth(const Residuals& sums, const std::vector<Tile>& tiles, Estimate& out) {
   const auto places = static_cast<double>(sums.places);
   out.edge_ms = sums.edge / places;
   out.diagonal_ms = sums.diagonal / places;
@@ -165,7 +189,7 @@ void judge_growth(const Residuals& sums, Estimate& out) {
         "and geologic_variation.");
     return;
   }
-  const double exponent = exponent_of(sums, out.rounding_m);
+  const double exponent = exponent_of(tiles, out.rounding_m, float_noise);
   out.growth_exponent = out.content == CellContent::kMeans
                             ? exponent_from_apparent(exponent, out.content)
                             : std::clamp(exponent, kLeastExponent, kLargestExponent);
@@ -199,13 +223,14 @@ void judge_content(const ResidualGrowth& growth, std::optional<CellContent> aske
   for (int i = 0; i < 3; ++i) out.rms_of_spacing[i] = growth.rms(i);
   out.ridge_gain = growth.ridge_gain();
   out.content_score = growth.means_score();
-  if (!asked && out.content_score >= kMeansFrom) out.content = CellContent::kMeans;
+  const bool rough_enough = exponent_from_apparent(growth.exponent(0), CellContent::kMeans) >= kLeastOfMeans;
+  if (!asked && rough_enough && out.content_score >= kMeansFrom) out.content = CellContent::kMeans;
 }
 
-void check_itself(const std::vector<Grid<float>>& blocks, Estimate& out, Progress& progress) {
+void check_itself(const std::vector<Grid<float>>& blocks, double second_exponent, Estimate& out,
+                  Progress& progress) {
   if (out.rms_of_spacing[0] <= 0) return;
-  const double growth = std::log2(out.rms_of_spacing[2] / out.rms_of_spacing[1]);
-  SelfCheck check(std::clamp(growth, kLeastExponent, kLargestExponent), out.rms_of_spacing[0]);
+  SelfCheck check(std::clamp(second_exponent, kLeastExponent, kLargestExponent), out.rms_of_spacing[0]);
   for (const Grid<float>& block : blocks) check.add(block, progress);
   if (check.places() < kEnough) return;
   const auto q = [&](double share) { return check.quantile(share); };
@@ -224,6 +249,7 @@ double Estimate::typical_with(double exponent) const {
 Estimate estimate(const DemSource& source, std::optional<CellContent> content, Progress& progress) {
   Residuals sums;
   ResidualGrowth growth;
+  std::vector<Tile> tiles;
   std::vector<Grid<float>> kept;
   RoundingDetector rounding;
   const Blocks blocks(source);
@@ -232,7 +258,7 @@ Estimate estimate(const DemSource& source, std::optional<CellContent> content, P
     progress.check();
     Grid<float> block = source.read(blocks.windows()[i], progress);
     drop_spikes(block, sums);
-    add_block(block, sums);
+    add_block(block, sums, tiles);
     growth.add(block);
     rounding.add(block);
     kept.push_back(std::move(block));
@@ -241,11 +267,11 @@ Estimate estimate(const DemSource& source, std::optional<CellContent> content, P
   judge_content(growth, content, out);
   out.rounding_m = rounding.sd_m();
   if (sums.places >= kFewest) {
-    judge_growth(sums, out);
+    judge_growth(sums, tiles, out);
   } else {
     judge_few(sums, out);
   }
-  check_itself(kept, out, progress);
+  check_itself(kept, growth.exponent(1), out, progress);
   out.typical_m = out.typical_with(out.growth_exponent);
   return out;
 }

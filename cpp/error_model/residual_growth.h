@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "terrain/grid.h"
 
@@ -20,7 +21,7 @@ class ResidualGrowth {
   std::size_t places() const { return places_; }
   // Root mean square of e_q, metres.
   double rms(int spacing) const;
-  // log2 rms(octave + 1) / rms(octave).
+  // log2 of rms(octave + 1) / rms(octave), tile by tile, averaged.
   double exponent(int octave) const;
   // 0: the exponents go on as those of samples do, 1: like those of means over the cells (which level out
   // short spacings, in a way that follows from H: fractal_surface.h). Where H itself changes with the spacing
@@ -34,6 +35,12 @@ class ResidualGrowth {
  private:
   std::size_t places_ = 0;
   std::array<double, kSpacings> squares_{};
+  struct Tile {
+    std::size_t places;
+    std::array<double, kSpacings> squares;
+  };
+  void add_tile(const Grid<float>& block, int top, int left, Tile& tile);
+  std::vector<Tile> tiles_;
   double guide_squares_ = 0, guide_products_ = 0;
 };
 
