@@ -79,7 +79,7 @@ TEST_P(ProbableViews, see_the_same_as_when_all_is_drawn) {
   terrain.largest_draw = 1e4f;
   const Seen everywhere = look(terrain, test.col, test.row, refinement);
   EXPECT_EQ(made.bits, everywhere.bits);
-  EXPECT_LT(made.in_doubt, everywhere.in_doubt);
+  EXPECT_LE(made.in_doubt, everywhere.in_doubt);
   const auto some = std::ranges::count_if(made.bits, [](std::uint16_t b) { return b != 0 && b != 0xFFFF; });
   EXPECT_GT(some, 100);  // or the test would say nothing
 }
