@@ -163,7 +163,8 @@ class Behind {
               terrain.window().row,
               terrain.window().col,
               options.seed,
-              terrain.scene().error.surface && !is_perturbed_ ? &posterior_.rises : nullptr} {}
+              terrain.scene().error.surface && !is_perturbed_ ? &posterior_.rises : nullptr,
+              largest_draw(terrain.scene().error.tails)} {}
   const OpenTerrain& open() const { return open_; }
 
  private:
@@ -171,6 +172,7 @@ class Behind {
     ErrorField nothing;
     nothing.cell_sizes = error.cell_sizes;
     nothing.larger_side_m = error.larger_side_m;
+    nothing.tails = error.tails;
     return nothing;
   }
 

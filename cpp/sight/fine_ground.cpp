@@ -9,7 +9,8 @@ namespace sightbound {
 namespace {
 
 constexpr std::int64_t kDrawsOfSample = 8;
-constexpr std::uint64_t kFineDraws = 0x66696e65, kCrossingDraws = 0x63726f73;  // than those of the nodes
+constexpr std::uint64_t kFineDraws = 0x66696e65, kCrossingDraws = 0x63726f73,
+                        kInsideDraws = 0x696e7369;  // other draws than those of the nodes
 
 // Of each number that goes into a slope: more than the roundings of a realisation differ from those of a
 // bound, some units of the 24th bit.
@@ -47,7 +48,15 @@ DrawKey FineGround::key_of(double row, double col, std::uint64_t kind) const {
 }
 
 Departure FineGround::across(const RayPlace& place, double part) const {
-  return {key_of(row_of(place), col_of(place), kCrossingDraws), spread_across(place, part)};
+  return {key_of(row_of(place), col_of(place), kCrossingDraws), spread_across(place, part),
+          terrain_.error.tails};
+}
+
+Departure FineGround::inside(const RayPlace& place, double along, double across) const {
+  const double middle = spread(row_of(place), col_of(place), half_across_, across_per_amplitude_);
+  const double parts = 4 * along * (1 - along) + 4 * across * (1 - across);
+  return {key_of(row_of(place), col_of(place), kInsideDraws), static_cast<float>(middle * std::sqrt(parts)),
+          terrain_.error.tails};
 }
 
 float FineGround::spread_across(const RayPlace& place, double part) const {
@@ -58,8 +67,9 @@ float FineGround::spread_across(const RayPlace& place, double part) const {
 FinePlace FineGround::middle(const RayPlace& a, const RayPlace& b, double per_2r) const {
   const RayPlace place = half_way(a, b);
   const double row = row_of(place), col = col_of(place), half_m = 0.5 * std::abs(b.s - a.s);
-  return {{key_of(row, col, kFineDraws), spread(row, col, half_m, per_amplitude(half_m))},
-          ray_slope(place.s, per_2r)};
+  return {
+      {key_of(row, col, kFineDraws), spread(row, col, half_m, per_amplitude(half_m)), terrain_.error.tails},
+      ray_slope(place.s, per_2r)};
 }
 
 void FineGround::between(const RayPlace& a, const RayPlace& b, double per_2r, Fineness fineness,

@@ -52,6 +52,8 @@ class FineGround {
   // Ground taken from two nodes half a cell apart, a share `part` of the way from the first: what it departs
   // by from the line between them.
   Departure across(const RayPlace&, double part) const;
+  // ... of ground taken from four nodes, at these shares of the way between them.
+  Departure inside(const RayPlace&, double along, double across) const;
   float most_across(const RayPlace& place, double part) const {
     return terrain_.largest_draw * spread_across(place, part);
   }

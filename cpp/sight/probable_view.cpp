@@ -42,8 +42,17 @@ HeightRange ProbableView::eye_range() const {
     sum.low += part * one[0].low;
     sum.high += part * one[0].high;
   });
+  const float most = terrain_.largest_draw * departure_at_eye().spread;
   const auto height = static_cast<float>(eye_.height);
-  return {sum.low + height, sum.high + height};
+  return {sum.low - most + height, sum.high + most + height};
+}
+
+// Of the ground there from what lies between the nodes.
+Departure ProbableView::departure_at_eye() const {
+  const double col = eye_.frame->col(), row = eye_.frame->row();
+  const auto share = [](double place) { return 2 * place - std::floor(2 * place); };
+  const FineGround fine(terrain_, false, eye_.base_row, eye_.base_col);
+  return fine.inside({col, row, 0}, share(col), share(row));
 }
 
 SixteenEyes ProbableView::eyes(std::uint32_t first_realisation) const {
@@ -52,6 +61,9 @@ SixteenEyes ProbableView::eyes(std::uint32_t first_realisation) const {
     const Lanes height = columns_[0].heights(line, node, first_realisation);
     for (int l = 0; l < kLanes; ++l) eyes.ground.v[l] += part * height.v[l];
   });
+  const Lanes between_nodes = eyes.ground;
+  draw_about(
+      departure_at_eye(), first_realisation, [&](int l) { return between_nodes.v[l]; }, eyes.ground);
   for (int l = 0; l < kLanes; ++l) eyes.eye.v[l] = eyes.ground.v[l] + static_cast<float>(eye_.height);
   return eyes;
 }

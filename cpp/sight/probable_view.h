@@ -50,6 +50,7 @@ class ProbableView {
   };
 
   HeightRange eye_range() const;
+  Departure departure_at_eye() const;
   SixteenEyes eyes(std::uint32_t first_realisation) const;
   template <class Visit>
   void nodes_at_eye(const Visit&) const;

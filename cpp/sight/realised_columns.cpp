@@ -79,20 +79,23 @@ float RealisedColumns::rise(const Place& node) const {
 
 SampleDraw RealisedColumns::sample(int major, int minor) const {
   const Place at = place(2 * major, 2 * minor);
-  return {{key(at), terrain_.spread.at(at.row / 2, at.col / 2)}, terrain_.mean.at(at.row / 2, at.col / 2)};
+  return {{key(at), terrain_.spread.at(at.row / 2, at.col / 2), terrain_.error.tails},
+          terrain_.mean.at(at.row / 2, at.col / 2)};
 }
 
 SampleDraw RealisedColumns::centre(int major, int minor) const {
   const Place at = place(major, minor);
-  return {{key(at), spread_of_surface(at)}, 0};
+  return {{key(at), spread_of_surface(at), terrain_.error.tails}, 0};
 }
 
 NodeDraw RealisedColumns::node(int major, int minor) const {
   const Place at = place(major, minor);
-  if (!is_learnt()) return {NodeDraw::Kind::kBetween, {key(at), spread_of_model(at)}, 0, 0};
-  if (major % 2 != 0 && minor % 2 != 0) return {NodeDraw::Kind::kCentre, {key(at), 0}, rise(at), 0};
+  if (!is_learnt())
+    return {NodeDraw::Kind::kBetween, {key(at), spread_of_model(at), terrain_.error.tails}, 0, 0};
+  if (major % 2 != 0 && minor % 2 != 0)
+    return {NodeDraw::Kind::kCentre, {key(at), 0, terrain_.error.tails}, rise(at), 0};
   const auto share = static_cast<float>(terrain_.error.surface->from_centres / 2);
-  return {NodeDraw::Kind::kSide, {key(at), spread_of_surface(at)}, rise(at), share};
+  return {NodeDraw::Kind::kSide, {key(at), spread_of_surface(at), terrain_.error.tails}, rise(at), share};
 }
 
 Lanes RealisedColumns::heights(int major, int minor, std::uint32_t first) const {

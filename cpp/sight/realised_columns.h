@@ -43,6 +43,7 @@ struct HeightRange {
 struct Departure {
   DrawKey key;
   float spread;
+  Tails tails;
 };
 
 // A number about another: the height at a sample.
@@ -108,9 +109,18 @@ SIGHTBOUND_INLINE void draw_about(const Departure& own, std::uint32_t first, con
     for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l);
     return;
   }
-  for (int l = 0; l < kLanes; ++l) {
-    const std::uint32_t bits = draw_bits(own.key, first + static_cast<std::uint32_t>(l));
-    out.v[l] = middle(l) + own.spread * normal_from(bits);
+  const auto add = [&](const auto& from) {
+    for (int l = 0; l < kLanes; ++l) {
+      const std::uint32_t bits = draw_bits(own.key, first + static_cast<std::uint32_t>(l));
+      out.v[l] = middle(l) + own.spread * from(bits);
+    }
+  };
+  if (own.tails == Tails::kNormal) {
+    add([](std::uint32_t bits) { return normal_from(bits); });
+  } else if (own.tails == Tails::kLaplace) {
+    add([](std::uint32_t bits) { return laplace_from(bits); });
+  } else {
+    add([](std::uint32_t bits) { return student_from(bits); });
   }
 }
 
