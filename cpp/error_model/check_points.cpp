@@ -17,6 +17,11 @@ constexpr std::size_t kMostBins = 10, kFewestInBin = 30;
 // Of a scale from n residuals, times sqrt(n): 1.30 for Laplace, the least sure; 0.89 for normal ones.
 constexpr double kRelativeErrorOfScale = 1.3;
 
+constexpr std::size_t kPlaceOf99 = 6;  // in kShownConfidences
+static_assert(kShownConfidences[kPlaceOf99] == 0.99);
+constexpr std::size_t kFewestForHeavyTails = 1000;
+constexpr double kMuchHeavier = 1.25;
+
 using Value = std::function<double(const CheckedPlace&)>;
 
 double squared(double x) { return x * x; }
@@ -127,6 +132,12 @@ void warn(ErrorCheck& check) {
   }
   if (found.count < kFewestForTails) {
     say("With " + std::to_string(found.count) + " places the kind of tails cannot be told (needed: 100).");
+  }
+  const double z99 = two_sided_quantile(0.99, check.tails), q99 = check.quantiles[kPlaceOf99];
+  if (found.count >= kFewestForHeavyTails && q99 > kMuchHeavier * z99) {
+    say("The tails are heavier than any that the model knows: one residual in a hundred is beyond " +
+        number_text(q99, 3) + " sigma, where " + name_of(check.tails) + " tails have it beyond " +
+        number_text(z99, 3) + ". Claims at 99 % will hold less often than that.");
   }
   if (check.at_flat == 0 && check.between > 0) {
     say("The residuals are no larger than what the DEM's own shape lets expect between its samples: nothing "

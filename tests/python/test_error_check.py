@@ -116,6 +116,13 @@ def test_few_points_tell_no_tails_and_say_so():
     assert any("kind of tails cannot be told" in note for note in model.report["warnings"])
 
 
+def test_tails_heavier_than_all_are_told_of():
+    errors = np.random.default_rng(1).standard_t(1.5, size=KEPT)
+    assert any("heavier than any" in note for note in check_samples(errors).report["warnings"])
+    errors = np.random.default_rng(1).laplace(size=KEPT)
+    assert not any("heavier than any" in note for note in check_samples(errors).report["warnings"])
+
+
 def test_blunders_are_told_of_but_kept():
     noise = np.random.default_rng(2).standard_normal(KEPT)
     noise[::9, ::7] += 80.0
