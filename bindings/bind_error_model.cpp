@@ -14,6 +14,7 @@
 
 #include "error_model/error_model.h"
 #include "error_model/estimate.h"
+#include "error_model/products.h"
 #include "io/error_rasters.h"
 #include "jobs/resolve_error.h"
 
@@ -135,6 +136,21 @@ void bind_accuracy(py::module_& m) {
       py::arg("tails"));
 }
 
+void bind_products(py::module_& m) {
+  using namespace py::literals;
+  m.def("products", [] {
+    py::dict all;
+    for (const Product& product : products()) {
+      all[py::str(product.name)] =
+          py::dict("title"_a = product.title, "vertical_rmse"_a = product.vertical_rmse(),
+                   "shared"_a = product.shared, "source"_a = product.source);
+    }
+    return all;
+  });
+  m.def(
+      "require_product", [](const std::string& name) { product_from(name); }, py::arg("name"));
+}
+
 // What the DEM itself tells; `warnings` are data.
 void bind_estimate(py::module_& m) {
   py::class_<Estimate::Quantiles>(m, "SelfCheck")
@@ -188,6 +204,7 @@ void bind_error_model(py::module_& m) {
   bind_terrain_types(m);
   bind_model(m);
   bind_accuracy(m);
+  bind_products(m);
   bind_estimate(m);
 }
 

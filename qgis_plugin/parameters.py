@@ -166,6 +166,19 @@ def error_block():
                 True,
             )
         ),
+        product_parameter(),
+        advanced(
+            choice("TAILS", tr("Distribution of errors"), ["auto", "normal", "laplace", "student"], "auto")
+        ),
+        advanced(
+            metres(
+                "CORRELATION_LENGTH",
+                tr("Correlation length of vertical errors"),
+                default("correlation_length"),
+            )
+        ),
+        advanced(number("SHARED_BIAS", tr("Bias of all heights in metres"), default("shared_bias"))),
+        advanced(choice("SAMPLES_OR_MEANS", tr("Cells hold"), ["auto", "samples", "means"], "auto")),
         advanced(
             QgsProcessingParameterFile(
                 "ERROR_MODEL",
@@ -177,6 +190,11 @@ def error_block():
             )
         ),
     ]
+
+
+def product_parameter():
+    label = tr("Elevation product of published accuracy")
+    return advanced(choice("ERROR_PRODUCT", label, ["none", *default("error_products")], "none"))
 
 
 def _terrain_rows():

@@ -207,15 +207,6 @@ def error_maps(
     return ErrorMaps(core.error_maps(core_dem(dem), core_model(error_model, dem), arguments.threads(threads), progress))
 
 
-def error_quantile(confidence: float, tails: str = "normal") -> float:
-    """How many sigma an error stays within with a confidence between 0 and 1; tails are "normal", "laplace" or "student".
-
-    Raises:
-        ValueError: a confidence outside, an unknown kind of tails.
-    """
-    return core.two_sided_quantile(arguments.number("confidence", confidence), arguments.word("tails", tails))
-
-
 class _Parts:
     """Shares one progress among the parts of a job."""
 

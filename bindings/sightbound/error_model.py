@@ -235,7 +235,8 @@ class ErrorModel:
     @property
     def report(self) -> dict[str, Any]:
         """What estimate_error() found: growth_exponent, typical_sigma, rounding, rms_of_spacing (metres) and more; of
-        checkpoints and reference under these names; warnings. Else empty."""
+        checkpoints and reference under these names; warnings. Of a product its title and source (product_error()). Else
+        empty."""
         return dict(self._report)
 
     def __repr__(self) -> str:
@@ -274,6 +275,43 @@ class ErrorModel:
                 raise ValueError(f"{field} has shape {values.shape}, the DEM has {dem.shape}; give one value per cell.")
             getattr(model, f"set_{field}")(values, core_dem(dem).flipped)
         return model
+
+
+def two_sided_quantile(confidence: float, tails: str | None = None) -> float:
+    """z(c): within so many standard deviations lies the share `confidence` of errors with these `tails` (None: normal).
+
+    Raises:
+        ValueError: a confidence outside 0 to 1, or unknown tails.
+    """
+    return core.two_sided_quantile(arguments.number("confidence", confidence), arguments.word("tails", tails or "normal"))
+
+
+def products() -> dict[str, dict[str, Any]]:
+    """Elevation products of published accuracy: name -> title, vertical_rmse (metres, one standard deviation of a
+    sample), shared (what is published of the product as a whole: no part of vertical_rmse), and source."""
+    return core.products()
+
+
+def product_error(name: str, **other: Any) -> ErrorModel:
+    """The model of a product by name; see products(). What lies between its samples is estimated from the DEM.
+
+    Args:
+        name: "srtm_eurasia", "copernicus_glo30", "3dep_ql2" ...
+        other: further arguments of ErrorModel.from_accuracy, which win over what is published.
+
+    Returns:
+        A model; its `report` holds product, title, shared and source.
+
+    Raises:
+        ValueError: no such product (the message lists them), or a value out of range.
+    """
+    core.require_product(arguments.word("name", name))
+    found = products()[name]
+    if all(other.get(key) is None for key in ("rmse", "le90", "le95", "vertical_rmse")):
+        other["vertical_rmse"] = found["vertical_rmse"]
+    model = ErrorModel.from_accuracy(**other)
+    model._report = {"product": name, **{key: found[key] for key in ("title", "shared", "source")}}
+    return model
 
 
 def core_model(model: ErrorModel | None, dem: Dem) -> core.ErrorModel:

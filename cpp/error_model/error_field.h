@@ -55,6 +55,7 @@ struct ErrorField {
   std::vector<CellSize> cell_sizes;  // one per row, at the DEM's middle column (so that windows agree)
   std::vector<double> farthest;  // one per row: the largest distance to the sample within its cell, metres
   double larger_side_m = 0;      // L
+  Tails tails = Tails::kNormal;  // of the error in units of sigma
 
   // Learnt from the DEM: what the terrain does between its samples, with amplitude + node share of it for
   // the unit. Of DEMs of means the sampling error holds what a mean leaves open at its own place.

@@ -28,8 +28,10 @@ constexpr std::size_t kEnough = 1000;  // places; with fewer, further blocks are
 constexpr std::size_t kFewest = 64;    // places that H may be measured on
 constexpr double kUsualExponent = 1;   // bare earth: median 1.0-1.1 of sixteen lidar terrains
 constexpr double kLeastExponent = 0.1, kLargestExponent = 2;
-constexpr double kMeansFrom =
-    0.85;                         // of the score: samples of ground that changes with the spacing reach 0.8
+// Of the score. What is taken for means by mistake comes out too cautious, not too bold.
+constexpr double kMeansFrom = 0.6;
+constexpr double kLeastOfMeans =
+    0.25;                         // H; if means had to be rougher, it is H that changes with the spacing
 constexpr float kHighest = 1e5f;  // metres; no height on Earth, but a spike or an undeclared nodata value
 
 struct Residuals {
@@ -221,7 +223,8 @@ void judge_content(const ResidualGrowth& growth, std::optional<CellContent> aske
   for (int i = 0; i < 3; ++i) out.rms_of_spacing[i] = growth.rms(i);
   out.ridge_gain = growth.ridge_gain();
   out.content_score = growth.means_score();
-  if (!asked && out.content_score >= kMeansFrom) out.content = CellContent::kMeans;
+  const bool rough_enough = exponent_from_apparent(growth.exponent(0), CellContent::kMeans) >= kLeastOfMeans;
+  if (!asked && rough_enough && out.content_score >= kMeansFrom) out.content = CellContent::kMeans;
 }
 
 void check_itself(const std::vector<Grid<float>>& blocks, double second_exponent, Estimate& out,

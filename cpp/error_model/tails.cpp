@@ -101,4 +101,10 @@ double one_sided_quantile(double p, Tails tails) {
   return p > 0.5 ? two_sided_quantile(2 * p - 1, tails) : -two_sided_quantile(1 - 2 * p, tails);
 }
 
+double certain_ratio(Tails tails) {
+  constexpr double kNormalRatio = 3.29;
+  if (tails == Tails::kNormal) return kNormalRatio;
+  return one_sided_quantile(normal_cdf(kNormalRatio), tails);
+}
+
 }  // namespace sightbound

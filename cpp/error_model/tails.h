@@ -24,5 +24,7 @@ double cdf(double k, Tails tails);
 double two_sided_quantile(double confidence, Tails tails);
 // The k with F(k) = p, p in (0, 1).
 double one_sided_quantile(double p, Tails tails);
+// Beyond this |k*| a probability is 0 or 1: F = 0.9995, 3.29 for normal tails.
+double certain_ratio(Tails tails);
 
 }  // namespace sightbound

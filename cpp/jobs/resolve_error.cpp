@@ -230,6 +230,7 @@ ErrorField resolve_error(const ErrorModel& completed, const DemSource& source,
   ErrorField field;
   add_geometry(field, job, georeference);
   field.profile = profile_of(completed, field.larger_side_m);
+  field.tails = completed.tails_used();
 
   SampleField sigma_v = given_sigma_v(job);
   std::optional<Surroundings> around;
@@ -249,6 +250,14 @@ ErrorField resolve_error(const ErrorModel& completed, const DemSource& source,
     warn_of_holes(make_holes(field.amplitude, heights), "geologic_variation", window, warnings);
   }
   return field;
+}
+
+void take_bias_off(const ErrorModel& model, Grid<float>& heights, const Workers& workers) {
+  if (model.shared_bias == 0) return;
+  workers.for_each(index(heights.rows()), [&](std::size_t r) {
+    float* row = heights.row(static_cast<int>(r));
+    for (int c = 0; c < heights.cols(); ++c) row[c] = static_cast<float>(row[c] - model.shared_bias);
+  });
 }
 
 ResolveMemory resolve_error_memory(const ErrorModel& model, const Window& window) {

@@ -10,41 +10,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-SIGHTBOUND_VECTOR
-void draw(const DrawKey& key, std::uint32_t first, float mean, float spread, Lanes& out) {
-  for (int l = 0; l < kLanes; ++l)
-    out.v[l] = mean + spread * normal_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
-}
-
-SIGHTBOUND_VECTOR
-void draw_between(const DrawKey& key, std::uint32_t first, const Lanes& a, const Lanes& b, float spread,
-                  Lanes& out) {
-  for (int l = 0; l < kLanes; ++l) {
-    const float middle = 0.5f * (a.v[l] + b.v[l]);
-    out.v[l] = middle + spread * normal_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
-  }
-}
-
-// The middle of a side from a to b, with the departures c and d of the centres beside.
-struct Side {
-  float rise, share, spread;
-};
-SIGHTBOUND_VECTOR
-void draw_side(const DrawKey& key, std::uint32_t first, const Lanes& a, const Lanes& b, const Lanes& c,
-               const Lanes& d, const Side& side, Lanes& out) {
-  for (int l = 0; l < kLanes; ++l) {
-    const float middle = 0.5f * (a.v[l] + b.v[l]) + side.rise + side.share * (c.v[l] + d.v[l]);
-    out.v[l] = middle + side.spread * normal_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
-  }
-}
-
-SIGHTBOUND_VECTOR
-void add_centre(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d, float rise,
-                const Lanes& departure, Lanes& out) {
-  for (int l = 0; l < kLanes; ++l)
-    out.v[l] = 0.25f * ((a.v[l] + b.v[l]) + (c.v[l] + d.v[l])) + rise + departure.v[l];
-}
-
 // Half of the way from a sample to its neighbour along the row, the column, the diagonal; metres.
 enum Way { kAlongRow, kAlongColumn, kAlongDiagonal };
 double half_way(const CellSize& cell, Way way) {
@@ -54,10 +19,9 @@ double half_way(const CellSize& cell, Way way) {
 
 }  // namespace
 
-RealisedColumns::RealisedColumns(const OpenTerrain& terrain, bool transposed, std::uint32_t first_realisation)
+RealisedColumns::RealisedColumns(const OpenTerrain& terrain, bool transposed)
     : terrain_(terrain),
       transposed_(transposed),
-      first_(first_realisation),
       samples_major_(transposed ? terrain.mean.rows() : terrain.mean.cols()),
       samples_minor_(transposed ? terrain.mean.cols() : terrain.mean.rows()) {
   if (const auto& surface = terrain.error.surface; surface && terrain.rises) {
@@ -76,47 +40,8 @@ RealisedColumns::RealisedColumns(const OpenTerrain& terrain, bool transposed, st
   }
 }
 
-bool RealisedColumns::Line::holds(int of_major, int first, int last) {
-  if (major == of_major && from <= first && last <= to) return true;
-  major = of_major;
-  from = first;
-  to = last;
-  values.resize(std::max(values.size(), at(last - first + 1)));
-  return false;
-}
-
 DrawKey RealisedColumns::key(const Place& at) const {
   return draw_key(terrain_.seed, 2 * terrain_.row + at.row, 2 * terrain_.col + at.col);
-}
-
-const Lanes* RealisedColumns::samples(int major, int from, int to) {
-  // The line of the lower number is kept in its own place, so that neighbouring majors find it again.
-  Line& line = samples_[major % 2];
-  if (line.holds(major, from, to)) return line.at_zero();
-  for (int n = from; n <= to; ++n) {
-    const Place node = place(2 * major, 2 * n);
-    const float spread = terrain_.spread.at(node.row / 2, node.col / 2),
-                mean = terrain_.mean.at(node.row / 2, node.col / 2);
-    Lanes& out = line.at_zero()[n];
-    if (spread == 0) {
-      std::fill_n(out.v, kLanes, mean);
-    } else {
-      draw(key(node), first_, mean, spread, out);
-    }
-  }
-  return line.at_zero();
-}
-
-// What is drawn of the centres of squares; beyond the rim too, so that sides there have two beside them.
-const Lanes* RealisedColumns::centre_departures(int major, int from, int to) {
-  Line& line = departures_[at((major + 1) / 2 % 2)];
-  if (line.holds(major, from, to)) return line.at_zero();
-  for (int n = from; n <= to; ++n) {
-    if (n % 2 == 0) continue;
-    const Place node = place(major, n);
-    draw(key(node), first_, 0, spread_of_surface(node), line.at_zero()[n]);
-  }
-  return line.at_zero();
 }
 
 // The spread at a node that is no sample: of the error between the two that it lies between.
@@ -152,67 +77,86 @@ float RealisedColumns::rise(const Place& node) const {
   return node.col % 2 == 0 ? rises.col_edge.at(r, c) : rises.centre.at(r, c);
 }
 
-const Lanes* RealisedColumns::nodes(int major, int from, int to) {
-  nodes_.major = -1;
-  nodes_.holds(major, from, to);
-  if (centre_ == 0) {
-    nodes_of_model(major, from, to);
-  } else if (major % 2 != 0) {
-    nodes_between(major, from, to);
-  } else {
-    nodes_along(major, from, to);
-  }
-  return nodes_.at_zero();
+SampleDraw RealisedColumns::sample(int major, int minor) const {
+  const Place at = place(2 * major, 2 * minor);
+  return {{key(at), terrain_.spread.at(at.row / 2, at.col / 2)}, terrain_.mean.at(at.row / 2, at.col / 2)};
 }
 
-void RealisedColumns::nodes_of_model(int major, int from, int to) {
-  const int low = from / 2, high = (to + 1) / 2, m = major / 2, next = (major + 1) / 2;
-  const Lanes* here = samples(m, low, high);
-  const Lanes* there = next == m ? here : samples(next, low, high);
+SampleDraw RealisedColumns::centre(int major, int minor) const {
+  const Place at = place(major, minor);
+  return {{key(at), spread_of_surface(at)}, 0};
+}
+
+NodeDraw RealisedColumns::node(int major, int minor) const {
+  const Place at = place(major, minor);
+  if (!is_learnt()) return {NodeDraw::Kind::kBetween, {key(at), spread_of_model(at)}, 0, 0};
+  if (major % 2 != 0 && minor % 2 != 0) return {NodeDraw::Kind::kCentre, {key(at), 0}, rise(at), 0};
+  const auto share = static_cast<float>(terrain_.error.surface->from_centres / 2);
+  return {NodeDraw::Kind::kSide, {key(at), spread_of_surface(at)}, rise(at), share};
+}
+
+Lanes RealisedColumns::heights(int major, int minor, std::uint32_t first) const {
+  const int m = major / 2, n = minor / 2, m1 = (major + 1) / 2, n1 = (minor + 1) / 2;
+  const auto drawn = [&](const SampleDraw& sample) {
+    Lanes lanes;
+    draw(sample, first, lanes);
+    return lanes;
+  };
+  const Lanes a = drawn(sample(m, n));
+  if (m == m1 && n == n1) return a;
+  const NodeDraw law = node(major, minor);
+  const bool is_centre = law.kind == NodeDraw::Kind::kCentre;
+  const Lanes b = drawn(is_centre ? sample(m, n1) : sample(m1, n1)), c = drawn(sample(m1, n)),
+              d = drawn(sample(m1, n1));
+  const int i = is_centre || m != m1 ? 0 : 1, j = is_centre ? 0 : 1 - i;
+  const Lanes e = drawn(centre(major - i, minor - j)), f = drawn(centre(major + i, minor + j));
+  Lanes out;
+  draw(law, first, {a, b, c, d, e, f}, out);
+  return out;
+}
+
+// At a sample.
+HeightRange RealisedColumns::range(int major, int minor) const {
+  const Place at = place(major, minor);
+  const float mean = terrain_.mean.at(at.row, at.col),
+              most = terrain_.largest_draw * terrain_.spread.at(at.row, at.col);
+  return {mean - most, mean + most};
+}
+
+// What all draws of a node that is no sample come to at most, in standard deviations' sizes.
+float RealisedColumns::most(int major, int minor) const {
+  const Place at = place(major, minor);
+  if (!is_learnt()) return spread_of_model(at);
+  if (major % 2 != 0 && minor % 2 != 0) return spread_of_surface(at);
+  const int i = major % 2 == 0 ? 1 : 0, j = 1 - i;  // to the centres on either side
+  const auto share = static_cast<float>(std::abs(terrain_.error.surface->from_centres) / 2);
+  return spread_of_surface(at) + share * (spread_of_surface(place(major - i, minor - j)) +
+                                          spread_of_surface(place(major + i, minor + j)));
+}
+
+void RealisedColumns::ranges(int major, int from, int to, std::vector<HeightRange>& out) const {
+  out.resize(at(to - from + 1));
+  const int m = major / 2, next = (major + 1) / 2;
   for (int n = from; n <= to; ++n) {
     const int k = n / 2, k1 = (n + 1) / 2;
-    Lanes& out = nodes_.at_zero()[n];
-    if (k == k1 && m == next) {
-      out = here[k];
-    } else {
-      const Place node = place(major, n);
-      draw_between(key(node), first_, here[k], there[k1], spread_of_model(node), out);
+    const HeightRange a = range(m, k);
+    HeightRange& here = out[at(n - from)];
+    if (m == next && k == k1) {
+      here = a;
+      continue;
     }
-  }
-}
-
-void RealisedColumns::nodes_between(int major, int from, int to) {
-  const int low = from / 2, high = (to + 1) / 2;
-  const Lanes *here = samples(major / 2, low, high), *there = samples(major / 2 + 1, low, high);
-  const Lanes* departures = centre_departures(major, from - 1, to + 1);
-  const auto share = static_cast<float>(terrain_.error.surface->from_centres / 2);
-  for (int n = from; n <= to; ++n) {
-    const int k = n / 2;
-    const Place node = place(major, n);
-    Lanes& out = nodes_.at_zero()[n];
-    if (n % 2 != 0) {
-      add_centre(here[k], here[k + 1], there[k], there[k + 1], rise(node), departures[n], out);
-    } else {
-      draw_side(key(node), first_, here[k], there[k], departures[n - 1], departures[n + 1],
-                {rise(node), share, spread_of_surface(node)}, out);
+    const HeightRange b = range(next, k1);
+    const float room = terrain_.largest_draw * most(major, n);
+    here = {0.5f * (a.low + b.low), 0.5f * (a.high + b.high)};
+    if (is_learnt()) {
+      if (m != next && k != k1) {
+        const HeightRange c = range(m, k1), d = range(next, k);
+        here = {0.5f * here.low + 0.25f * (c.low + d.low), 0.5f * here.high + 0.25f * (c.high + d.high)};
+      }
+      const float up = rise(place(major, n));
+      here = {here.low + up, here.high + up};
     }
-  }
-}
-
-void RealisedColumns::nodes_along(int major, int from, int to) {
-  const Lanes* here = samples(major / 2, from / 2, (to + 1) / 2);
-  const Lanes* before = centre_departures(major - 1, from - 1, to + 1);
-  const Lanes* behind = centre_departures(major + 1, from - 1, to + 1);
-  const auto share = static_cast<float>(terrain_.error.surface->from_centres / 2);
-  for (int n = from; n <= to; ++n) {
-    Lanes& out = nodes_.at_zero()[n];
-    if (n % 2 == 0) {
-      out = here[n / 2];
-    } else {
-      const Place node = place(major, n);
-      draw_side(key(node), first_, here[n / 2], here[n / 2 + 1], before[n], behind[n],
-                {rise(node), share, spread_of_surface(node)}, out);
-    }
+    here = {here.low - room, here.high + room};
   }
 }
 
