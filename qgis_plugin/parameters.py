@@ -166,14 +166,7 @@ def error_block():
                 True,
             )
         ),
-        advanced(
-            choice(
-                "ERROR_PRODUCT",
-                tr("Elevation product of published accuracy"),
-                ["none", *default("error_products")],
-                "none",
-            )
-        ),
+        product_parameter(),
         advanced(
             choice("TAILS", tr("Distribution of errors"), ["auto", "normal", "laplace", "student"], "auto")
         ),
@@ -197,6 +190,11 @@ def error_block():
             )
         ),
     ]
+
+
+def product_parameter():
+    label = tr("Elevation product of published accuracy")
+    return advanced(choice("ERROR_PRODUCT", label, ["none", *default("error_products")], "none"))
 
 
 def _terrain_rows():

@@ -59,6 +59,7 @@ class EstimateError(SightboundAlgorithm):
             blocks.raster("REFERENCE", tr("A better elevation model of at least a part"), True),
             blocks.choice("SAMPLES_OR_MEANS", tr("A cell holds"), ["auto", "samples", "means"], "auto"),
             QgsProcessingParameterBoolean("CORRECT_SHIFT", tr("Judge with the shift taken off"), False, True),
+            blocks.product_parameter(),
             blocks.advanced(
                 blocks.choice("CHECKPOINT_UNIT", tr("Vertical unit of the check points"), list(METRES_PER), "metre")
             ),
@@ -81,6 +82,8 @@ class EstimateError(SightboundAlgorithm):
 
     def contradiction(self, parameters, context):
         if given(parameters, "CHECKPOINTS") or given(parameters, "REFERENCE"):
+            if word(self, parameters, "ERROR_PRODUCT", context) != "none":
+                return tr("ERROR_PRODUCT: CHECKPOINTS and REFERENCE measure what a product only publishes; leave it at none.")
             return ""
         if given(parameters, "OUTPUT_CORRECTED"):
             return tr("OUTPUT_CORRECTED: a shift is seen only against CHECKPOINTS or a REFERENCE; give one of them.")
@@ -97,12 +100,14 @@ class EstimateError(SightboundAlgorithm):
     def compute(self, sightbound, parameters, context, feedback):
         dem = open_dem(sightbound, self.dem, self.vertical_unit, feedback)
         corrected = self.parameterAsBoolean(parameters, "CORRECT_SHIFT", context)
+        product = word(self, parameters, "ERROR_PRODUCT", context)
         with core_errors("REFERENCE" if self.reference else "CHECKPOINTS"):
             model = sightbound.estimate_error(
                 dem,
                 word(self, parameters, "SAMPLES_OR_MEANS", context),
                 checkpoints=self.checkpoints,
                 reference=self._reference(sightbound, feedback),
+                error_model=None if product == "none" else sightbound.product_error(product),
                 correct_shift=corrected,
                 progress=Progress(feedback, 0.0, 70.0),
             )

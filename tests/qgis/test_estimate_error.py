@@ -64,6 +64,11 @@ def test_nothing_need_be_written(run, dem):
     assert set(run("estimateerror", INPUT=dem)) == {"ERROR_MODEL_USED", "GROWTH_EXPONENT", "TYPICAL_SIGMA"}
 
 
+def test_a_product_of_published_accuracy(run, dem):
+    model = json.loads(run("estimateerror", INPUT=dem, ERROR_PRODUCT="3dep_ql2")["ERROR_MODEL_USED"])
+    assert model["vertical_rmse"] > 0.0 and "from_dem" in model["geologic_variation"]
+
+
 def test_check_points_with_z_or_a_field_in_any_crs(run, dem, points, tmp_path):
     found = [
         run("estimateerror", INPUT=dem, CHECKPOINTS=points),
@@ -148,4 +153,5 @@ def test_bad_input(run, dem, points, tmp_path):
     assert "ELEVATION_FIELD:" in refused(CHECKPOINTS=points, ELEVATION_FIELD="none")
     assert "CHECKPOINTS: the layer is empty" in refused(CHECKPOINTS=empty)
     assert "REFERENCE: The reference does not overlap" in refused(REFERENCE=far)
+    assert "ERROR_PRODUCT:" in refused(CHECKPOINTS=points, ERROR_PRODUCT="3dep_ql2")
     assert "OUTPUT_CORRECTED:" in refused(OUTPUT_CORRECTED=str(tmp_path / "moved.tif"))
