@@ -8,6 +8,7 @@
 
 #include "error_model/error_model.h"
 #include "jobs/error_surfaces_job.h"
+#include "jobs/line_of_sight_job.h"
 #include "jobs/option_names.h"
 #include "jobs/volume_viewshed_job.h"
 
@@ -26,6 +27,8 @@ py::dict defaults() {
   const ViewshedOptions options;
   const ErrorModel model;
   const VolumeSightOptions sight;
+  const WholeLineOptions whole_line;
+  const RadioOptions radio;
   return py::dict(
       "observer_height"_a = observer.height, "target_height"_a = observer.target_height,
       "min_distance"_a = observer.min_distance, "max_distance"_a = finite_or_none(observer.max_distance),
@@ -39,7 +42,9 @@ py::dict defaults() {
       "vertical_unit"_a = "auto", "band"_a = 1, "terrain_table"_a = default_terrain_table(),
       "target_spacing"_a = sight.targets.spacing_m, "target_ceiling"_a = sight.targets.ceiling_m,
       "seen_from"_a = name_of(sight.seen_from), "holds_for"_a = name_of(sight.holds_for),
-      "most_lines"_a = sight.most_lines);
+      "most_lines"_a = sight.most_lines, "realisations"_a = whole_line.realisations,
+      "seed"_a = whole_line.seed, "probability_stand"_a = name_of(whole_line.stand),
+      "fresnel_share"_a = radio.zone_share);
 }
 
 }  // namespace

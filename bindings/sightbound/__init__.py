@@ -18,7 +18,8 @@ from .error_estimate import estimate_error
 from .error_model import ErrorModel, terrain_table
 from .error_surfaces import ErrorSurfaces, error_surfaces
 from .hidden_volume import HiddenRasters, HiddenVolume
-from .line_of_sight import LineOfSight, line_of_sight, lines_of_sight
+from .intervisibility import Intervisibility, intervisibility
+from .line_of_sight import Fresnel, LineOfSight, WholeLine, line_of_sight, lines_of_sight
 from .probable_viewshed import ProbableViewshed, probable_viewshed
 from .simplify import SimplifiedTin, dem_to_tin, dem_to_tins, simplify
 from .tin import Tin, read_tin, tin_layers
@@ -47,8 +48,10 @@ __all__ = [
     "ErrorModel",
     "ErrorSurfaces",
     "ErrorVolume",
+    "Fresnel",
     "HiddenRasters",
     "HiddenVolume",
+    "Intervisibility",
     "LineOfSight",
     "ProbableViewshed",
     "SimplifiedTin",
@@ -58,6 +61,7 @@ __all__ = [
     "Verification",
     "ViewshedResult",
     "VolumeLayer",
+    "WholeLine",
     "defaults",
     "dem_to_tin",
     "dem_to_tins",
@@ -65,6 +69,7 @@ __all__ = [
     "estimate_error",
     "estimate_volume_viewshed",
     "gdal_version",
+    "intervisibility",
     "line_of_sight",
     "lines_of_sight",
     "probable_viewshed",

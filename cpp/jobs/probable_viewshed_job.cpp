@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "error_model/posterior.h"
 #include "error_model/verdict.h"
+#include "error_model/wilson.h"
 #include "io/crs.h"
 #include "jobs/loaded_terrain.h"
 #include "jobs/observer_posts.h"
@@ -190,16 +191,6 @@ class Counting {
   std::vector<SeenBits> asked_;
   std::vector<Window> own_;  // the cell that an observer stands on exactly
 };
-
-// Wilson's interval for a share of n, at 95 %.
-struct Interval {
-  double low, high;
-};
-Interval wilson(double share, double n) {
-  const double z2 = kZ95 * kZ95, middle = share + z2 / (2 * n);
-  const double half = kZ95 * std::sqrt((share * (1 - share) + z2 / (4 * n)) / n), all = 1 + z2 / n;
-  return {(middle - half) / all, (middle + half) / all};
-}
 
 void say_what_was_seen(const Counting& counting, const Grid<std::uint16_t>& counts,
                        const LoadedTerrain& terrain, const Window& canvas, double confidence,

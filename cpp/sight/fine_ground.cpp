@@ -39,6 +39,15 @@ void raise_horizon(const RayPlace& at, const RaySlopes& slopes, Lanes& horizon) 
 
 void FineGround::raise(const RayPlace& a, const RayPlace& b, int depth, const RaySlopes& slopes,
                        Lanes& horizon) const {
+  const RayPlace between = middle(a, b);
+  raise_horizon(between, slopes, horizon);
+  if (depth > 1) {
+    raise(a, between, depth - 1, slopes, horizon);
+    raise(between, b, depth - 1, slopes, horizon);
+  }
+}
+
+RayPlace FineGround::middle(const RayPlace& a, const RayPlace& b) const {
   RayPlace middle;
   middle.major = 0.5 * (a.major + b.major);
   middle.minor = 0.5 * (a.minor + b.minor);
@@ -51,20 +60,19 @@ void FineGround::raise(const RayPlace& a, const RayPlace& b, int depth, const Ra
   };
   const DrawKey key = draw_key(terrain_.seed ^ kOtherDraws, eighth(row, terrain_.row + base_row_),
                                eighth(col, terrain_.col + base_col_));
-  draw_middle(key, first_, a.ground, b.ground, spread(row, col, 0.5 * std::abs(b.s - a.s)), middle.ground);
-  raise_horizon(middle, slopes, horizon);
-  if (depth > 1) {
-    raise(a, middle, depth - 1, slopes, horizon);
-    raise(middle, b, depth - 1, slopes, horizon);
-  }
+  draw_middle(key, first_, a.ground, b.ground, spread_between(a, b), middle.ground);
+  return middle;
 }
 
-float FineGround::spread(double row, double col, double half_m) const {
+float FineGround::spread_between(const RayPlace& a, const RayPlace& b) const {
+  const double major = 0.5 * (a.major + b.major), minor = 0.5 * (a.minor + b.minor);
+  const double row = transposed_ ? major : minor, col = transposed_ ? minor : major;
   const auto nearest = [](double x, int base, int count) {
     return std::clamp(base + static_cast<int>(std::lround(x)), 0, count - 1);
   };
   const double amplitude = terrain_.error.amplitude.at(nearest(row, base_row_, terrain_.mean.rows()),
                                                        nearest(col, base_col_, terrain_.mean.cols()));
+  const double half_m = 0.5 * std::abs(b.s - a.s);
   return amplitude > 0 ? static_cast<float>(amplitude * terrain_.error.profile(half_m, amplitude)) : 0.0f;
 }
 

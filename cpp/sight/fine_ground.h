@@ -41,9 +41,12 @@ class FineGround {
   // middles of the halves ...
   void raise(const RayPlace& a, const RayPlace& b, int depth, const RaySlopes&, Lanes& horizon) const;
 
- private:
-  float spread(double row, double col, double half_m) const;
+  // The middle of two places, its ground drawn.
+  RayPlace middle(const RayPlace& a, const RayPlace& b) const;
+  // By how much it departs from the mean of the two, metres (standard deviation).
+  float spread_between(const RayPlace& a, const RayPlace& b) const;
 
+ private:
   const OpenTerrain& terrain_;
   const bool transposed_;
   const int base_row_, base_col_;

@@ -49,7 +49,11 @@ RealisedColumns::RealisedColumns(const OpenTerrain& terrain, bool transposed, st
   }
 }
 
-// The spread at a node that is no sample: of the error between the two that it lies between.
+void RealisedColumns::begin(std::uint32_t first_realisation) {
+  first_ = first_realisation;
+  for (Line& line : lines_) line.major = -1;
+}
+
 double RealisedColumns::between(int major, int minor) const {
   const int row = transposed_ ? major : minor, col = transposed_ ? minor : major;
   const int r = row / 2, c = col / 2, r1 = (row + 1) / 2, c1 = (col + 1) / 2;

@@ -34,6 +34,11 @@ class RealisedColumns {
   // Of the line `major`, nodes `from` to `to` (both included); valid until the next call. NaN where terrain
   // is not known.
   const Lanes* nodes(int major, int from, int to);
+  // From now on the sixteen realisations from this one.
+  void begin(std::uint32_t first_realisation);
+
+  // Of a node that is no sample: the spread about the mean of the two that it lies between, metres.
+  double between(int major, int minor) const;
 
   int majors() const { return 2 * samples_major_ - 1; }
   int minors() const { return 2 * samples_minor_ - 1; }
@@ -44,11 +49,10 @@ class RealisedColumns {
     std::vector<Lanes> heights;
   };
   const Lanes* samples(Line&, int major, int from, int to);
-  double between(int major, int minor) const;
 
   const OpenTerrain& terrain_;
   const bool transposed_;
-  const std::uint32_t first_;
+  std::uint32_t first_;
   int samples_major_, samples_minor_;
   Line lines_[2];
   std::vector<Lanes> nodes_;
