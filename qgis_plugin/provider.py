@@ -11,6 +11,7 @@ from .algorithms.build_error_volume import BuildErrorVolume
 from .algorithms.confidence_viewshed import ConfidenceViewshed
 from .algorithms.dem_to_tin import DemToTin
 from .algorithms.error_surfaces import ErrorSurfaces
+from .algorithms.intervisibility import IntervisibilityNetwork
 from .algorithms.line_of_sight_profile import LineOfSightProfile
 from .algorithms.probable_viewshed import ProbableViewshed
 from .algorithms.simplify_tin import SimplifyTin
@@ -26,6 +27,7 @@ _ALGORITHMS = (
     ProbableViewshed,
     ErrorSurfaces,
     LineOfSightProfile,
+    IntervisibilityNetwork,
     BuildErrorVolume,
     VolumeViewshed,
     VolumeTargets,
