@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 
 #include "error_model/error_model.h"
 #include "error_model/estimate.h"
+#include "error_model/products.h"
 #include "io/error_rasters.h"
 #include "jobs/resolve_error.h"
 
@@ -34,6 +36,17 @@ Quantity quantity_from(const py::object& value) {
   if (py::isinstance<py::float_>(value)) return value.cast<double>();
   const auto [path, band] = value.cast<std::pair<std::string, int>>();
   return RasterFile{path, band};
+}
+
+// A named choice of the core as its name; None when unset.
+template <class Choice>
+py::object name_or_none(const std::optional<Choice>& choice) {
+  return choice ? py::cast(name_of(*choice)) : py::object(py::none());
+}
+template <class Choice>
+std::optional<Choice> choice_from(const std::optional<std::string>& name,
+                                  Choice (*from_name)(const std::string&)) {
+  return name ? std::optional(from_name(*name)) : std::nullopt;
 }
 
 template <Quantity ErrorModel::*Field>
@@ -66,6 +79,19 @@ void bind_model(py::module_& m) {
       .def_readwrite("growth_exponent", &ErrorModel::growth_exponent)
       .def_readonly("typical_m", &ErrorModel::typical_m)
       .def_readwrite("terrain_types", &ErrorModel::terrain_types)
+      .def_property(
+          "tails", [](const ErrorModel& self) { return name_or_none(self.tails); },
+          [](ErrorModel& self, const std::optional<std::string>& name) {
+            self.tails = choice_from(name, tails_from);
+          })
+      .def_property(
+          "samples_or_means", [](const ErrorModel& self) { return name_or_none(self.samples_or_means); },
+          [](ErrorModel& self, const std::optional<std::string>& name) {
+            self.samples_or_means = choice_from(name, cell_content_from);
+          })
+      .def_readwrite("correlation_length", &ErrorModel::correlation_length)
+      .def_readwrite("shared_bias", &ErrorModel::shared_bias)
+      .def_readwrite("ridge_gain", &ErrorModel::ridge_gain)
       .def("set_vertical_rmse", &set_array<&ErrorModel::vertical_rmse>, py::arg("values").noconvert(),
            py::arg("flipped"))
       .def("set_geologic_variation", &set_array<&ErrorModel::geologic_variation>,
@@ -99,21 +125,66 @@ void bind_accuracy(py::module_& m) {
         [](double metres) { return horizontal_sigma(metres, HorizontalMeasure::kCe90); });
   m.def("horizontal_sigma_of_ce95",
         [](double metres) { return horizontal_sigma(metres, HorizontalMeasure::kCe95); });
+  m.def(
+      "two_sided_quantile",
+      [](double confidence, const std::string& tails) {
+        return two_sided_quantile(confidence, tails_from(tails));
+      },
+      py::arg("confidence"), py::arg("tails"));
+  m.def(
+      "tails_cdf", [](double k, const std::string& tails) { return cdf(k, tails_from(tails)); }, py::arg("k"),
+      py::arg("tails"));
+}
+
+void bind_products(py::module_& m) {
+  using namespace py::literals;
+  m.def("products", [] {
+    py::dict all;
+    for (const Product& product : products()) {
+      all[py::str(product.name)] =
+          py::dict("title"_a = product.title, "vertical_rmse"_a = product.vertical_rmse(),
+                   "shared"_a = product.shared, "source"_a = product.source);
+    }
+    return all;
+  });
+  m.def(
+      "require_product", [](const std::string& name) { product_from(name); }, py::arg("name"));
 }
 
 // What the DEM itself tells; `warnings` are data.
 void bind_estimate(py::module_& m) {
+  py::class_<Estimate::Quantiles>(m, "SelfCheck")
+      .def_readonly("places", &Estimate::Quantiles::places)
+      .def_readonly("median", &Estimate::Quantiles::median)
+      .def_readonly("q683", &Estimate::Quantiles::q683)
+      .def_readonly("q90", &Estimate::Quantiles::q90)
+      .def_readonly("q95", &Estimate::Quantiles::q95)
+      .def_readonly("q99", &Estimate::Quantiles::q99);
   py::class_<Estimate>(m, "Estimate")
       .def_readonly("growth_exponent", &Estimate::growth_exponent)
       .def_readonly("typical_m", &Estimate::typical_m)
       .def_readonly("rounding_m", &Estimate::rounding_m)
+      .def_property_readonly(
+          "rms_of_spacing",
+          [](const Estimate& e) { return std::vector<double>(e.rms_of_spacing, e.rms_of_spacing + 3); })
+      .def_property_readonly("samples_or_means", [](const Estimate& e) { return name_of(e.content); })
+      .def_readonly("means_score", &Estimate::content_score)
+      .def_readonly("ridge_gain", &Estimate::ridge_gain)
+      .def_property_readonly("tails", [](const Estimate& e) { return name_of(e.tails); })
+      .def_readonly("local_scale", &Estimate::local_scale)
+      .def_readonly("self_check", &Estimate::self_check)
       .def_readonly("warnings", &Estimate::warnings);
   m.def(
       "estimate",
-      [](const std::shared_ptr<DemSource>& dem, py::object progress) {
-        return ProgressBridge(std::move(progress)).run([&](Progress& p) { return estimate(*dem, p); });
+      [](const std::shared_ptr<DemSource>& dem, const std::optional<std::string>& samples_or_means,
+         py::object progress) {
+        std::optional<CellContent> content;
+        if (samples_or_means) content = cell_content_from(*samples_or_means);
+        return ProgressBridge(std::move(progress)).run([&](Progress& p) {
+          return estimate(*dem, content, p);
+        });
       },
-      py::arg("dem"), py::arg("progress"));
+      py::arg("dem"), py::arg("samples_or_means"), py::arg("progress"));
   m.def("with_estimate", &with_estimate, py::arg("model"), py::arg("estimate"));
   m.def(
       "complete_model",
@@ -133,6 +204,7 @@ void bind_error_model(py::module_& m) {
   bind_terrain_types(m);
   bind_model(m);
   bind_accuracy(m);
+  bind_products(m);
   bind_estimate(m);
 }
 

@@ -22,6 +22,9 @@ void bind_options(py::module_& m) {
       .def_readwrite("refraction", &ProbableOptions::refraction)
       .def_readwrite("curvature", &ProbableOptions::curvature)
       .def_readwrite("realisations", &ProbableOptions::realisations)
+      .def_readwrite("precision", &ProbableOptions::precision)
+      .def_readwrite("refinement", &ProbableOptions::refinement)
+      .def_readwrite("heights", &ProbableOptions::heights)
       .def_readwrite("seed", &ProbableOptions::seed)
       .def_readwrite("extent", &ProbableOptions::extent)
       .def_readwrite("threads", &ProbableOptions::threads)
@@ -36,6 +39,8 @@ py::dict report_of(const ProbableReport& found) {
                          "ground_height"_a = one.ground_height, "eye_height"_a = one.eye_height));
   }
   return py::dict("observers"_a = eyes, "realisations"_a = found.realisations,
+                  "largest_standard_error"_a = found.largest_standard_error,
+                  "in_doubt_m2"_a = found.in_doubt_m2, "heights"_a = found.heights,
                   "expected_visible_m2"_a = found.expected_m2, "visible_m2"_a = found.visible_m2,
                   "uncertain_m2"_a = found.uncertain_m2, "hidden_m2"_a = found.hidden_m2,
                   "error_model"_a = found.error_model, "warnings"_a = found.warnings);
@@ -50,6 +55,11 @@ void bind_result(py::module_& m) {
   py::class_<ProbableViewshed>(m, "ProbableViewshed")
       .def_property_readonly("probability", &grid_of<&ProbableViewshed::probability>)
       .def_property_readonly("standard_error", &grid_of<&ProbableViewshed::standard_error>)
+      .def_property_readonly("realisations", &grid_of<&ProbableViewshed::realisations>)
+      .def("at_height",
+           [](const py::object& self, std::size_t n) {
+             return view_of(self.cast<const ProbableViewshed&>().at_heights.at(n), self);
+           })
       .def_property_readonly("verdict", &grid_of<&ProbableViewshed::verdict>)
       .def_property_readonly(
           "geotransform",

@@ -125,7 +125,7 @@ void bind_volume(py::module_& m) {
       .def_property_readonly("voxel_m", &ErrorVolume::voxel_m)
       .def_property_readonly("voxel_height_m", &ErrorVolume::voxel_height_m)
       .def_property_readonly("largest_confidence",
-                             [](const ErrorVolume& v) { return 2 * normal_cdf(v.largest_ratio()) - 1; })
+                             [](const ErrorVolume& v) { return v.largest_confidence(); })
       .def_property_readonly("error_model", [](const ErrorVolume& v) { return v.error_model(); })
       .def_property_readonly("crs_wkt", [](const ErrorVolume& v) { return v.surface().frame().crs_wkt; })
       .def_property_readonly("is_height_field",

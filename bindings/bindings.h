@@ -16,6 +16,7 @@ py::handle make_cancelled(py::module_& m);
 void bind_errors(py::handle cancelled);
 void bind_dem(py::module_& m);
 void bind_error_model(py::module_& m);
+void bind_error_check(py::module_& m);
 void bind_viewshed(py::module_& m);
 void bind_line_of_sight(py::module_& m);
 void bind_intervisibility(py::module_& m);

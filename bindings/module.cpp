@@ -19,6 +19,7 @@ PYBIND11_MODULE(_core, m) {
   python::bind_errors(python::make_cancelled(m));
   python::bind_dem(m);
   python::bind_error_model(m);
+  python::bind_error_check(m);
   python::bind_viewshed(m);
   python::bind_line_of_sight(m);
   python::bind_intervisibility(m);

@@ -29,14 +29,21 @@ _INPUTS = (
     "GEOLOGIC_RANGE",
     "GEOLOGIC_RASTER",
     "TERRAIN_TYPES",
+    "ERROR_PRODUCT",
+    "TAILS",
+    "CORRELATION_LENGTH",
+    "SHARED_BIAS",
+    "SAMPLES_OR_MEANS",
 )
 
 
 @dataclass
 class ErrorChoice:
-    """What the user said. `file` replaces the rest; nothing said at all leaves the model to the core's estimate."""
+    """What the user said. `file` replaces the rest, a `product` stands for what was not said; nothing said at all
+    leaves the model to the core's estimate."""
 
     file: str = ""
+    product: str = ""
     accuracy: dict = field(default_factory=dict)
     other: dict = field(default_factory=dict)
 
@@ -47,6 +54,9 @@ class ErrorChoice:
                 return sightbound.ErrorModel.from_json(Path(self.file).read_text(encoding="utf-8"))
             except (ValueError, OSError) as error:
                 raise bad_input("ERROR_MODEL", f"{self.file}: {error}") from error
+        if self.product:
+            with core_errors():
+                return sightbound.product_error(self.product, **self.accuracy, **self.other)
         if not self.accuracy and not self.other:
             return None
         with core_errors():
@@ -59,6 +69,7 @@ def read_error_block(algorithm, parameters, context, feedback, dem):
     choice = ErrorChoice()
     _read_accuracy(choice, algorithm, parameters, context, feedback)
     _read_geologic(choice, algorithm, parameters, context, feedback, dem)
+    _read_nature(choice, algorithm, parameters, context)
     return choice
 
 
@@ -133,6 +144,20 @@ def _read_geologic(choice, algorithm, parameters, context, feedback, dem):
         choice.other["geologic_range"] = reach
     if model != algorithm.parameterDefinition("GEOLOGIC_MODEL").defaultValue():
         choice.other["geologic_model"] = model
+
+
+def _read_nature(choice, algorithm, parameters, context):
+    """What errors have in common, what a cell holds, and the product that the rest is known of."""
+    product = word(algorithm, parameters, "ERROR_PRODUCT", context)
+    choice.product = "" if product == "none" else product
+    for name in ("TAILS", "SAMPLES_OR_MEANS"):
+        said = word(algorithm, parameters, name, context)
+        if said != "auto":
+            choice.other[name.lower()] = said
+    for name in ("CORRELATION_LENGTH", "SHARED_BIAS"):
+        metres = number_or_none(algorithm, parameters, name, context)
+        if metres:
+            choice.other[name.lower()] = metres
 
 
 def _polygons(algorithm, parameters, context, feedback, dem):

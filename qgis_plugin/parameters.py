@@ -167,6 +167,26 @@ def error_block():
             )
         ),
         advanced(
+            choice(
+                "ERROR_PRODUCT",
+                tr("Elevation product of published accuracy"),
+                ["none", *default("error_products")],
+                "none",
+            )
+        ),
+        advanced(
+            choice("TAILS", tr("Distribution of errors"), ["auto", "normal", "laplace", "student"], "auto")
+        ),
+        advanced(
+            metres(
+                "CORRELATION_LENGTH",
+                tr("Correlation length of vertical errors"),
+                default("correlation_length"),
+            )
+        ),
+        advanced(number("SHARED_BIAS", tr("Bias of all heights in metres"), default("shared_bias"))),
+        advanced(choice("SAMPLES_OR_MEANS", tr("Cells hold"), ["auto", "samples", "means"], "auto")),
+        advanced(
             QgsProcessingParameterFile(
                 "ERROR_MODEL",
                 tr("Error model file (replaces all of the above)"),

@@ -7,10 +7,11 @@ whose surroundings are drawn once more beside it.
 """
 
 import html
+import json
 import math
-from statistics import NormalDist
 from typing import NamedTuple
 
+from . import core
 from .line_outputs import critical_index
 from .pages import page, ticks
 from .text import tr
@@ -36,12 +37,13 @@ def write_profiles(path, lines, confidence, error_model):
     parts = [f"<p>{summary.format(len(lines), confidence=confidence, **counts)}</p>"]
     if left_out:
         parts.append(f"<p>{tr('The first {} are drawn; {} were left out.').format(MOST, left_out)}</p>")
-    parts += [_section(line, confidence) for line in lines[:MOST]]
+    z = core.load().two_sided_quantile(confidence, json.loads(error_model).get("tails"))
+    parts += [_section(line, z) for line in lines[:MOST]]
     parts.append(f"<h2>{tr('Error model used')}</h2><pre>{html.escape(error_model)}</pre>")
     path.write_text(page(tr("Lines of sight"), parts), encoding="utf-8")
 
 
-def _section(line, confidence):
+def _section(line, z):
     sight = line.sight
     title = f"{html.escape(line.observer.name)} → {html.escape(line.target.name)}"
     facts = [
@@ -56,7 +58,7 @@ def _section(line, confidence):
             tr("surely visible from {:.1f} m above the target's ground").format(sight.required_height)
         )
     facts += _extra_facts(sight)
-    return f"<h2>{title}</h2><p>{' · '.join(facts)}</p>{_drawing(line, confidence)}"
+    return f"<h2>{title}</h2><p>{' · '.join(facts)}</p>{_drawing(line, z)}"
 
 
 def _extra_facts(sight):
@@ -75,9 +77,8 @@ def _extra_facts(sight):
     return facts
 
 
-def _drawing(line, confidence):
+def _drawing(line, z):
     """The whole profile, and beside it the surroundings of the critical place, where the band can be seen."""
-    z = NormalDist().inv_cdf((1.0 + confidence) / 2.0)
     profile = line.sight.profile
     columns = [profile[name] for name in ("distance", "ground", "sigma", "line")]
     columns.append(profile.get("fresnel", [0.0] * len(columns[0])))

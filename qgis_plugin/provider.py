@@ -11,6 +11,7 @@ from .algorithms.build_error_volume import BuildErrorVolume
 from .algorithms.confidence_viewshed import ConfidenceViewshed
 from .algorithms.dem_to_tin import DemToTin
 from .algorithms.error_surfaces import ErrorSurfaces
+from .algorithms.estimate_error import EstimateError
 from .algorithms.intervisibility import IntervisibilityNetwork
 from .algorithms.line_of_sight_profile import LineOfSightProfile
 from .algorithms.probable_viewshed import ProbableViewshed
@@ -26,6 +27,7 @@ _ALGORITHMS = (
     ConfidenceViewshed,
     ProbableViewshed,
     ErrorSurfaces,
+    EstimateError,
     LineOfSightProfile,
     IntervisibilityNetwork,
     BuildErrorVolume,

@@ -14,8 +14,8 @@ job Cancelled. Jobs leave the interpreter to other threads while they run, and C
 
 from ._loading import core as _core
 from .dem import Dem, read_dem
-from .error_estimate import estimate_error
-from .error_model import ErrorModel, terrain_table
+from .error_estimate import ErrorMaps, error_maps, error_quantile, estimate_error, write_corrected
+from .error_model import ErrorModel, product_error, products, terrain_table, two_sided_quantile
 from .error_surfaces import ErrorSurfaces, error_surfaces
 from .hidden_volume import HiddenRasters, HiddenVolume
 from .intervisibility import Intervisibility, intervisibility
@@ -45,6 +45,7 @@ __all__ = [
     "Cancelled",
     "CoverRasters",
     "Dem",
+    "ErrorMaps",
     "ErrorModel",
     "ErrorSurfaces",
     "ErrorVolume",
@@ -65,6 +66,8 @@ __all__ = [
     "defaults",
     "dem_to_tin",
     "dem_to_tins",
+    "error_maps",
+    "error_quantile",
     "error_surfaces",
     "estimate_error",
     "estimate_volume_viewshed",
@@ -73,12 +76,15 @@ __all__ = [
     "line_of_sight",
     "lines_of_sight",
     "probable_viewshed",
+    "product_error",
+    "products",
     "read_dem",
     "read_tin",
     "simplify",
     "subtract_observer",
     "terrain_table",
     "tin_layers",
+    "two_sided_quantile",
     "verify",
     "viewshed",
     "viewsheds",
@@ -86,4 +92,5 @@ __all__ = [
     "volume_layer",
     "volume_targets",
     "volume_viewshed",
+    "write_corrected",
 ]

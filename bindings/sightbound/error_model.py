@@ -38,6 +38,13 @@ class ErrorModel:
         terrain_table: class -> metres, as a dict or as the path of a JSON or CSV file; None for terrain_table().
         terrain_layer: the layer of `terrain_types`; None for the first.
         growth_exponent: how fast the doubt grows with distance ("growth" only).
+        tails: how errors are distributed: "normal", "laplace" or "student" (5 degrees of freedom: what real ground
+            shows). None: normal, unless estimated.
+        correlation_length: metres; the measured errors of samples d apart correlate by exp(-d / length). 0: not at all.
+        shared_bias: how much the DEM is too high everywhere, metres. It moves heights that are absolute, nothing else.
+        samples_or_means: what a cell holds: "samples" (the height of its middle) or "means" (the mean over the cell).
+            None or "auto": samples, unless estimated.
+        ridge_gain: how far the truth stands above the surface, in units of its curvature (-2 to 2).
 
     Raises:
         ValueError: a value out of range, or values that contradict each other.
@@ -62,6 +69,11 @@ class ErrorModel:
         terrain_table: Mapping[str, float] | Path | None = None,
         terrain_layer: str | None = None,
         growth_exponent: float | None = None,
+        tails: str | None = None,
+        correlation_length: float = _DEFAULTS["correlation_length"],
+        shared_bias: float = _DEFAULTS["shared_bias"],
+        samples_or_means: str | None = None,
+        ridge_gain: float | None = None,
     ) -> None:
         model = core.ErrorModel()
         self._core, self._arrays, self._report = model, {}, {}
@@ -73,6 +85,14 @@ class ErrorModel:
             model.geologic_range = arguments.number("geologic_range", geologic_range)
         if growth_exponent is not None:
             model.growth_exponent = arguments.number("growth_exponent", growth_exponent)
+        if tails is not None:
+            model.tails = arguments.word("tails", tails)
+        model.correlation_length = arguments.number("correlation_length", correlation_length)
+        model.shared_bias = arguments.number("shared_bias", shared_bias)
+        if samples_or_means not in (None, "auto"):
+            model.samples_or_means = arguments.word("samples_or_means", samples_or_means)
+        if ridge_gain is not None:
+            model.ridge_gain = arguments.number("ridge_gain", ridge_gain)
         if terrain_types is not None:
             types = arguments.path("terrain_types", terrain_types)
             table = quantities.class_table(terrain_table)
@@ -188,8 +208,35 @@ class ErrorModel:
         return (types.table or None) if types else None
 
     @property
+    def tails(self) -> str | None:
+        """ "normal", "laplace" or "student"; None counts as normal."""
+        return self._core.tails
+
+    @property
+    def correlation_length(self) -> float:
+        """Metres, of the measured errors."""
+        return self._core.correlation_length
+
+    @property
+    def shared_bias(self) -> float:
+        """Metres by which the DEM is too high everywhere."""
+        return self._core.shared_bias
+
+    @property
+    def samples_or_means(self) -> str | None:
+        """ "samples" or "means"; None counts as samples."""
+        return self._core.samples_or_means
+
+    @property
+    def ridge_gain(self) -> float | None:
+        """How far the truth stands above the surface, in units of its curvature."""
+        return self._core.ridge_gain
+
+    @property
     def report(self) -> dict[str, Any]:
-        """What estimate_error() found: growth_exponent, typical_sigma and rounding (metres), warnings. Else empty."""
+        """What estimate_error() found: growth_exponent, typical_sigma, rounding, rms_of_spacing (metres) and more; of
+        checkpoints and reference under these names; warnings. Of a product its title and source (product_error()).
+        Else empty."""
         return dict(self._report)
 
     def __repr__(self) -> str:
@@ -228,6 +275,43 @@ class ErrorModel:
                 raise ValueError(f"{field} has shape {values.shape}, the DEM has {dem.shape}; give one value per cell.")
             getattr(model, f"set_{field}")(values, core_dem(dem).flipped)
         return model
+
+
+def two_sided_quantile(confidence: float, tails: str | None = None) -> float:
+    """z(c): within so many standard deviations lies the share `confidence` of errors with these `tails` (None: normal).
+
+    Raises:
+        ValueError: a confidence outside 0 to 1, or unknown tails.
+    """
+    return core.two_sided_quantile(arguments.number("confidence", confidence), arguments.word("tails", tails or "normal"))
+
+
+def products() -> dict[str, dict[str, Any]]:
+    """Elevation products of published accuracy: name -> title, vertical_rmse (metres, one standard deviation of a
+    sample), shared (what is published of the product as a whole: no part of vertical_rmse), and source."""
+    return core.products()
+
+
+def product_error(name: str, **other: Any) -> ErrorModel:
+    """The model of a product by name; see products(). What lies between its samples is estimated from the DEM.
+
+    Args:
+        name: "srtm_eurasia", "copernicus_glo30", "3dep_ql2" ...
+        other: further arguments of ErrorModel.from_accuracy, which win over what is published.
+
+    Returns:
+        A model; its `report` holds product, title, shared and source.
+
+    Raises:
+        ValueError: no such product (the message lists them), or a value out of range.
+    """
+    core.require_product(arguments.word("name", name))
+    found = products()[name]
+    if all(other.get(key) is None for key in ("rmse", "le90", "le95", "vertical_rmse")):
+        other["vertical_rmse"] = found["vertical_rmse"]
+    model = ErrorModel.from_accuracy(**other)
+    model._report = {"product": name, **{key: found[key] for key in ("title", "shared", "source")}}
+    return model
 
 
 def core_model(model: ErrorModel | None, dem: Dem) -> core.ErrorModel:

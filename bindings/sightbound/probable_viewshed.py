@@ -101,6 +101,9 @@ def probable_viewshed(
     refraction: float = _DEFAULTS["refraction"],
     curvature: bool = _DEFAULTS["curvature"],
     realisations: int = 1000,
+    precision: float = 0.03,
+    refinement: int = 1,
+    heights: Sequence[float] = (),
     seed: int = 1,
     extent: Box | None = None,
     threads: int | None = None,
@@ -136,6 +139,9 @@ def probable_viewshed(
     options.refraction = arguments.number("refraction", refraction)
     options.curvature = bool(curvature)
     options.realisations = arguments.whole("realisations", realisations, 1, 65535)
+    options.precision = arguments.number("precision", precision)
+    options.refinement = arguments.whole("refinement", refinement, 0, 1)
+    options.heights = [arguments.number("heights", height) for height in heights]
     options.seed = arguments.whole("seed", seed, 0, 2**63 - 1)
     options.extent = arguments.extent(extent)
     options.threads = arguments.threads(threads)

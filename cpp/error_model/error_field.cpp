@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "error_model/error_field.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sightbound {
@@ -13,8 +14,11 @@ double GrowthProfile::operator()(double d, double amplitude) const {
     }
     case GeologicShape::kStep:
       return d < range_m ? 0 : 1;
-    case GeologicShape::kGrowth:
-      return std::pow(d / half_spacing_m, exponent);
+    case GeologicShape::kGrowth: {
+      // Along a line held at both ends: f^2H + (1-f)^2H - ... falls back to f (1 - f) for H of 1 and more.
+      const double t = d / half_spacing_m, h = std::min(exponent, 1.0);
+      return t < 1 ? std::pow(t * (2 - t), h) : std::pow(t, h / 2);
+    }
   }
   return 0;
 }

@@ -7,11 +7,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "earth/georeference.h"
 #include "error_model/error_model.h"
+#include "error_model/fractal_surface.h"
 #include "terrain/grid.h"
 
 namespace sightbound {
@@ -53,6 +55,17 @@ struct ErrorField {
   std::vector<CellSize> cell_sizes;  // one per row, at the DEM's middle column (so that windows agree)
   std::vector<double> farthest;  // one per row: the largest distance to the sample within its cell, metres
   double larger_side_m = 0;      // L
+  Tails tails = Tails::kNormal;  // of the error in units of sigma
+
+  // Learnt from the DEM: what the terrain does between its samples, with amplitude + node share of it for
+  // the unit. Of DEMs of means the sampling error holds what a mean leaves open at its own place.
+  std::optional<FractalSurface> surface;
+  double ridge_gain = 0;  // of the edges of `surface`
+
+  // The unit of `surface`, metres.
+  double plain_per_amplitude() const { return surface ? 1 / (1 - surface->node) : 1; }
+  // Of the sampling error the part that is no measurement's.
+  double sampling_per_amplitude() const { return surface ? surface->node / (1 - surface->node) : 0; }
 
   // Largest profile value anywhere in a cell of `row` with that amplitude.
   double largest_profile(int row, double amplitude_there) const {

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kLargestRange = 1e6;  // metres
 constexpr double kLeastExponent = 0.1, kLargestExponent = 2;
+constexpr double kLargestLength = 1e6;  // metres
+constexpr double kLargestRidgeGain = 2;
 
 std::string text(double value) {
   std::ostringstream out;
@@ -90,6 +92,7 @@ void validate_shape(const ErrorModel& model) {
                        " (bare earth: about 1), or no geologic_variation, to estimate both.");
   }
   if (model.typical_m) require_error("typical_m", *model.typical_m);
+  if (model.local_scale) require_between("local_scale", *model.local_scale, 0.01, 100, "");
 }
 
 void validate_types(const TerrainTypes& types) {
@@ -122,12 +125,24 @@ GeologicShape geologic_shape_from(const std::string& name) {
   throw InvalidInput("geologic_model is '" + name + "'; allowed are 'gaussian', 'step' and 'growth'.");
 }
 
+std::string name_of(CellContent content) { return content == CellContent::kMeans ? "means" : "samples"; }
+
+CellContent cell_content_from(const std::string& name) {
+  for (const auto content : {CellContent::kSamples, CellContent::kMeans}) {
+    if (name == name_of(content)) return content;
+  }
+  throw InvalidInput("samples_or_means is '" + name + "'; allowed are 'samples' and 'means'.");
+}
+
 void ErrorModel::validate() const {
   validate_quantity("vertical_rmse", vertical_rmse);
   require_error("horizontal_rmse", horizontal_rmse);
   validate_quantity("geologic_variation", geologic_variation);
   validate_shape(*this);
   if (terrain_types) validate_types(*terrain_types);
+  require_between("correlation_length", correlation_length, 0, kLargestLength, " m");
+  require_between("shared_bias", shared_bias, -kLargestError, kLargestError, " m");
+  if (ridge_gain) require_between("ridge_gain", *ridge_gain, -kLargestRidgeGain, kLargestRidgeGain, "");
 }
 
 bool ErrorModel::needs_estimate() const {

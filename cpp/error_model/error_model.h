@@ -12,6 +12,7 @@
 #include <string>
 #include <variant>
 
+#include "error_model/tails.h"
 #include "terrain/grid.h"
 
 namespace sightbound {
@@ -36,10 +37,15 @@ using Quantity = std::variant<FromDem, double, RasterFile, SharedGrid>;
 enum class GeologicShape {
   kGaussian,  // P = exp(-f d^2 / 2), f = Delta^2, or 1 / range^2 when a range is given
   kStep,      // P = 1 below the range, else 0
-  kGrowth,    // 1 - P = (2 d / L)^H, L the larger cell side: what decimating a DEM shows
+  kGrowth,    // L the larger cell side, t = 2 d / L: 1 - P = (t (2 - t))^min(H, 1), t >= 1: t^(min(H, 1) / 2)
 };
 std::string name_of(GeologicShape shape);                    // "gaussian", "step", "growth"
 GeologicShape geologic_shape_from(const std::string& name);  // throws InvalidInput
+
+// What a cell of the DEM holds: the height of its middle, or the mean over it.
+enum class CellContent { kSamples, kMeans };
+std::string name_of(CellContent content);                // "samples", "means"
+CellContent cell_content_from(const std::string& name);  // throws InvalidInput
 
 // Polygons that say what lies between the samples; the one under a sample counts, the largest value on
 // overlap.
@@ -60,8 +66,17 @@ struct ErrorModel {
   GeologicShape geologic_shape = GeologicShape::kGaussian;  // kGrowth when geologic_variation is FromDem
   std::optional<double> geologic_range;                     // metres; never with kGrowth
   std::optional<double> growth_exponent;                    // H, for kGrowth
-  std::optional<double> typical_m;  // sd half a spacing from a sample, where the local map has no answer
+  std::optional<double> typical_m;    // sd half a spacing from a sample, where the local map has no answer
+  std::optional<double> local_scale;  // factor of the local map; unset = 1
   std::optional<TerrainTypes> terrain_types;
+  std::optional<Tails> tails;     // of all errors in units of sigma; unset = normal
+  double correlation_length = 0;  // metres: measurement errors d apart correlate by exp(-d / length); 0 = not
+  double shared_bias = 0;         // metres, DEM minus truth, the same everywhere; moves absolute heights only
+  std::optional<CellContent> samples_or_means;  // unset = samples
+  std::optional<double> ridge_gain;  // how far the truth stands above the surface, in units of its curvature
+
+  // F and z of every claim.
+  Tails tails_used() const { return tails.value_or(Tails::kNormal); }
 
   // Throws InvalidInput naming field, value and allowed range.
   void validate() const;

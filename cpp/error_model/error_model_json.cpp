@@ -3,8 +3,10 @@
 //   1.5                                                  metres
 //   {"raster": "sigma.tif", "band": 1}                   a raster file
 //   {"from_dem": {}}, also null                          to be learnt from the DEM
-//   {"from_dem": {"exponent": 0.93, "typical_m": 1.2}}   learnt: local map with this growth
+//   {"from_dem": {"exponent": 0.93, "typical_m": 1.2, "scale": 1}}   learnt: local map with this growth
 //   (geologic_variation only)
+// What was added later is written only where it says something: a model that does not use it reads the same
+// as before.
 #include <initializer_list>
 #include <string>
 
@@ -95,9 +97,10 @@ Quantity quantity_from(const Json& value, const std::string& field) {
 void read_recipe(const Json& value, ErrorModel& model) {
   if (!value.is_object() || !value.contains("from_dem")) return;
   const Json& recipe = value["from_dem"];
-  require_known(recipe, "geologic_variation.from_dem", {"exponent", "typical_m"});
+  require_known(recipe, "geologic_variation.from_dem", {"exponent", "typical_m", "scale"});
   model.growth_exponent = optional_number(recipe, "exponent");
   model.typical_m = optional_number(recipe, "typical_m");
+  model.local_scale = optional_number(recipe, "scale");
 }
 
 Json to_json(const TerrainTypes& types) {
@@ -123,10 +126,33 @@ TerrainTypes types_from(const Json& value) {
   return types;
 }
 
+// What the errors of different places have in common, and what a cell holds.
+void read_nature(const Json& json, ErrorModel& model) {
+  const auto said = [&](const char* name) { return json.contains(name) && !json[name].is_null(); };
+  if (said("tails")) model.tails = tails_from(string(json["tails"], "tails"));
+  if (said("correlation_length")) {
+    model.correlation_length = number(json["correlation_length"], "correlation_length");
+  }
+  if (said("shared_bias")) model.shared_bias = number(json["shared_bias"], "shared_bias");
+  if (said("samples_or_means")) {
+    model.samples_or_means = cell_content_from(string(json["samples_or_means"], "samples_or_means"));
+  }
+  model.ridge_gain = optional_number(json, "ridge_gain");
+}
+
+void write_nature(const ErrorModel& model, Json& json) {
+  if (model.tails) json["tails"] = name_of(*model.tails);
+  if (model.correlation_length != 0) json["correlation_length"] = model.correlation_length;
+  if (model.shared_bias != 0) json["shared_bias"] = model.shared_bias;
+  if (model.samples_or_means) json["samples_or_means"] = name_of(*model.samples_or_means);
+  if (model.ridge_gain) json["ridge_gain"] = *model.ridge_gain;
+}
+
 ErrorModel model_from(const Json& json) {
   require_known(json, "The model",
                 {kFormat, "vertical_rmse", "horizontal_rmse", "geologic_variation", "geologic_model",
-                 "geologic_range", "growth_exponent", "terrain_types"});
+                 "geologic_range", "growth_exponent", "terrain_types", "tails", "correlation_length",
+                 "shared_bias", "samples_or_means", "ridge_gain"});
   if (json.contains(kFormat) && json[kFormat] != kFormatVersion) {
     refuse(std::string(kFormat) + " is " + json[kFormat].dump() + "; this version of Sightbound reads " +
            std::to_string(kFormatVersion) + ".");
@@ -147,6 +173,7 @@ ErrorModel model_from(const Json& json) {
   if (json.contains("terrain_types") && !json["terrain_types"].is_null()) {
     model.terrain_types = types_from(json["terrain_types"]);
   }
+  read_nature(json, model);
   return model;
 }
 
@@ -162,10 +189,12 @@ std::string written(const ErrorModel& model, bool arrays_allowed) {
     Json& recipe = json["geologic_variation"]["from_dem"];
     if (model.growth_exponent) recipe["exponent"] = *model.growth_exponent;
     if (model.typical_m) recipe["typical_m"] = *model.typical_m;
+    if (model.local_scale) recipe["scale"] = *model.local_scale;
   } else if (model.growth_exponent) {
     json["growth_exponent"] = *model.growth_exponent;
   }
   if (model.terrain_types) json["terrain_types"] = to_json(*model.terrain_types);
+  write_nature(model, json);
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

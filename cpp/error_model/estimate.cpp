@@ -4,7 +4,8 @@
 //   e_q = z - (z before + z after) / 2, neighbours q away along the row, the column and the NW-SE diagonal
 //
 // H comes from rows and columns alone, at the same places for both q; the diagonal, sqrt2 times as far, joins
-// in afterwards as e / sqrt2^H. The same three residuals make the local map (local_variation.h).
+// in afterwards. The same three residuals make the local map (local_variation.h). Wider spacings tell samples
+// from means (residual_growth.h); tails and scale are what the DEM's own samples show (self_check.h).
 #include "error_model/estimate.h"
 
 #include <algorithm>
@@ -13,7 +14,11 @@
 #include <cstdio>
 #include <limits>
 
+#include "error_model/fractal_surface.h"
+#include "error_model/local_variation.h"
+#include "error_model/residual_growth.h"
 #include "error_model/rounding.h"
+#include "error_model/self_check.h"
 
 namespace sightbound {
 
@@ -23,6 +28,10 @@ constexpr std::size_t kEnough = 1000;  // places; with fewer, further blocks are
 constexpr std::size_t kFewest = 64;    // places that H may be measured on
 constexpr double kUsualExponent = 1;   // bare earth: median 1.0-1.1 of sixteen lidar terrains
 constexpr double kLeastExponent = 0.1, kLargestExponent = 2;
+// Of the score. What is taken for means by mistake comes out too cautious, not too bold.
+constexpr double kMeansFrom = 0.6;
+constexpr double kLeastOfMeans =
+    0.25;                         // H; if means had to be rougher, it is H that changes with the spacing
 constexpr float kHighest = 1e5f;  // metres; no height on Earth, but a spike or an undeclared nodata value
 
 struct Residuals {
@@ -60,12 +69,28 @@ void add_place(const float* z, std::ptrdiff_t stride, bool far_known, Residuals&
   sums.diagonal += along_diagonal;
 }
 
-void add_block(const Grid<float>& block, Residuals& sums) {
+// Growth is measured on small tiles, each by itself, and then averaged: where terrain is cut off at a coast,
+// or a cliff stands in a plain, the few large steps would else speak for all.
+constexpr int kTile = 32;
+struct Tile {
+  double places, near_ms, far_ms;
+};
+
+void add_block(const Grid<float>& block, Residuals& sums, std::vector<Tile>& tiles) {
   const int rows = block.rows(), cols = block.cols();
-  for (int r = 1; r < rows - 1; ++r) {
-    const bool row_far = r >= 2 && r < rows - 2;
-    for (int c = 1; c < cols - 1; ++c) {
-      add_place(block.row(r) + c, cols, row_far && c >= 2 && c < cols - 2, sums);
+  for (int top = 0; top < rows; top += kTile) {
+    for (int left = 0; left < cols; left += kTile) {
+      const std::size_t places = sums.places;
+      const double near = sums.edge, far = sums.edge_far;
+      for (int r = std::max(top, 1); r < std::min(top + kTile, rows - 1); ++r) {
+        const bool row_far = r >= 2 && r < rows - 2;
+        for (int c = std::max(left, 1); c < std::min(left + kTile, cols - 1); ++c) {
+          add_place(block.row(r) + c, cols, row_far && c >= 2 && c < cols - 2, sums);
+        }
+      }
+      if (sums.places == places) continue;
+      const auto n = static_cast<double>(sums.places - places);
+      tiles.push_back({n, (sums.edge - near) / n, (sums.edge_far - far) / n});
     }
   }
 }
@@ -138,15 +163,20 @@ class Blocks {
 
 // Rounded heights add the same to the residuals of every spacing and hide the growth of what is left. A
 // residual holds the sample's own rounding and half of the sum of two others'.
-double exponent_of(const Residuals& sums, double rounding_m) {
+double exponent_of(const std::vector<Tile>& tiles, double rounding_m, double float_noise) {
   constexpr double kRoundingShare = 1.5, kLeastLeft = 0.1;
-  const double places = static_cast<double>(sums.places), rounding = kRoundingShare * rounding_m * rounding_m;
-  const double near = sums.edge / places, far = sums.edge_far / places;
-  const double left = std::max(near - rounding, kLeastLeft * near);
-  return 0.5 * std::log2(std::max(far - rounding, left) / left);
+  const double rounding = kRoundingShare * rounding_m * rounding_m;
+  double sum = 0, places = 0;
+  for (const Tile& tile : tiles) {
+    if (std::sqrt(tile.near_ms) <= float_noise) continue;  // flat
+    const double left = std::max(tile.near_ms - rounding, kLeastLeft * tile.near_ms);
+    sum += tile.places * 0.5 * std::log2(std::max(tile.far_ms - rounding, left) / left);
+    places += tile.places;
+  }
+  return places > 0 ? sum / places : kUsualExponent;
 }
 
-void judge_growth(const Residuals& sums, Estimate& out) {
+void judge_growth(const Residuals& sums, const std::vector<Tile>& tiles, Estimate& out) {
   const auto places = static_cast<double>(sums.places);
   out.edge_ms = sums.edge / places;
   out.diagonal_ms = sums.diagonal / places;
@@ -159,8 +189,10 @@ void judge_growth(const Residuals& sums, Estimate& out) {
         "and geologic_variation.");
     return;
   }
-  const double exponent = exponent_of(sums, out.rounding_m);
-  out.growth_exponent = std::clamp(exponent, kLeastExponent, kLargestExponent);
+  const double exponent = exponent_of(tiles, out.rounding_m, float_noise);
+  out.growth_exponent = out.content == CellContent::kMeans
+                            ? exponent_from_apparent(exponent, out.content)
+                            : std::clamp(exponent, kLeastExponent, kLargestExponent);
   if (exponent > kOversampledExponent) {
     out.warnings.push_back(
         "The DEM is smoother than its cell size (growth exponent H = " + text(exponent) +
@@ -185,15 +217,40 @@ void judge_few(const Residuals& sums, Estimate& out) {
                          " places; better give vertical_rmse and geologic_variation.");
 }
 
+void judge_content(const ResidualGrowth& growth, std::optional<CellContent> asked, Estimate& out) {
+  out.content = asked.value_or(CellContent::kSamples);
+  if (growth.places() < kEnough || growth.rms(0) <= 0) return;
+  for (int i = 0; i < 3; ++i) out.rms_of_spacing[i] = growth.rms(i);
+  out.ridge_gain = growth.ridge_gain();
+  out.content_score = growth.means_score();
+  const bool rough_enough = exponent_from_apparent(growth.exponent(0), CellContent::kMeans) >= kLeastOfMeans;
+  if (!asked && rough_enough && out.content_score >= kMeansFrom) out.content = CellContent::kMeans;
+}
+
+void check_itself(const std::vector<Grid<float>>& blocks, double second_exponent, Estimate& out,
+                  Progress& progress) {
+  if (out.rms_of_spacing[0] <= 0) return;
+  SelfCheck check(std::clamp(second_exponent, kLeastExponent, kLargestExponent), out.rms_of_spacing[0]);
+  for (const Grid<float>& block : blocks) check.add(block, progress);
+  if (check.places() < kEnough) return;
+  const auto q = [&](double share) { return check.quantile(share); };
+  out.self_check = {check.places(), q(0.5), q(0.683), q(0.9), q(0.95), q(0.99)};
+  out.tails = check.tails();
+  out.local_scale = check.scale();
+}
+
 }  // namespace
 
 double Estimate::typical_with(double exponent) const {
-  const double growth = std::exp2(-exponent);
-  return growth * std::sqrt((2 * edge_ms + growth * diagonal_ms) / 3);
+  const ResidualScale scale = residual_scale(exponent, content, local_scale);
+  return scale.to_half_spacing * std::sqrt((2 * edge_ms + scale.diagonal * diagonal_ms) / 3);
 }
 
-Estimate estimate(const DemSource& source, Progress& progress) {
+Estimate estimate(const DemSource& source, std::optional<CellContent> content, Progress& progress) {
   Residuals sums;
+  ResidualGrowth growth;
+  std::vector<Tile> tiles;
+  std::vector<Grid<float>> kept;
   RoundingDetector rounding;
   const Blocks blocks(source);
   for (std::size_t i = 0; i < blocks.windows().size(); ++i) {
@@ -201,16 +258,20 @@ Estimate estimate(const DemSource& source, Progress& progress) {
     progress.check();
     Grid<float> block = source.read(blocks.windows()[i], progress);
     drop_spikes(block, sums);
-    add_block(block, sums);
+    add_block(block, sums, tiles);
+    growth.add(block);
     rounding.add(block);
+    kept.push_back(std::move(block));
   }
   Estimate out;
+  judge_content(growth, content, out);
   out.rounding_m = rounding.sd_m();
   if (sums.places >= kFewest) {
-    judge_growth(sums, out);
+    judge_growth(sums, tiles, out);
   } else {
     judge_few(sums, out);
   }
+  check_itself(kept, growth.exponent(1), out, progress);
   out.typical_m = out.typical_with(out.growth_exponent);
   return out;
 }
@@ -221,6 +282,10 @@ ErrorModel with_estimate(ErrorModel model, const Estimate& estimate) {
     model.geologic_shape = GeologicShape::kGrowth;
     if (!model.growth_exponent) model.growth_exponent = estimate.growth_exponent;
     if (!model.typical_m) model.typical_m = estimate.typical_with(*model.growth_exponent);
+    if (!model.samples_or_means) model.samples_or_means = estimate.content;
+    if (!model.local_scale) model.local_scale = estimate.local_scale;
+    if (!model.ridge_gain) model.ridge_gain = estimate.ridge_gain;
+    if (!model.tails) model.tails = estimate.tails;
   }
   return model;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Method. Rows are walked in bands, each keeping five rows of heights and three of box sums:
 //
-//   m = e_row^2 + e_col^2 + w e_diagonal^2      doubled residuals, w = 2^-H
+//   m = e_row^2 + e_col^2 + w e_diagonal^2      doubled residuals, w = ResidualScale::diagonal
 //   b = m(c-1) + m(c) + m(c+1)                  row sums, then three rows of them: 27 weighted squares
 //
 // NaN runs through this unhindered; only cells that come out NaN are looked at again, residual by residual.
@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include "error_model/fractal_surface.h"
 #include "error_model/row_bands.h"
 
 namespace sightbound {
@@ -21,7 +22,7 @@ constexpr int kReach = Surroundings::kReach;
 struct Weights {
   float diagonal;  // w
   float whole;     // factor for sqrt(sum of all 27)
-  double growth;   // 2^-H
+  ResidualScale scale;
   float typical;
 };
 
@@ -67,10 +68,11 @@ float from_what_is_there(RowRing& heights, int row, int i, const Weights& weight
     for (int k = i - 1; k <= i + 1; ++k) {
       add(z[k], z[k - 1], z[k + 1], 1);
       add(z[k], up[k], down[k], 1);
-      add(z[k], up[k - 1], down[k + 1], weights.growth);
+      add(z[k], up[k - 1], down[k + 1], weights.scale.diagonal);
     }
   }
-  return count > 0 ? static_cast<float>(weights.growth * std::sqrt(sum / count)) : weights.typical;
+  return count > 0 ? static_cast<float>(weights.scale.to_half_spacing * std::sqrt(sum / count))
+                   : weights.typical;
 }
 
 void repair(RowRing& heights, int row, const Weights& weights, int cols, float* out) {
@@ -83,11 +85,16 @@ void repair(RowRing& heights, int row, const Weights& weights, int cols, float* 
 
 }  // namespace
 
-Grid<float> local_variation(const Surroundings& heights, double growth_exponent, double typical_m,
+ResidualScale residual_scale(double growth_exponent, CellContent content, double local_scale) {
+  return {local_scale * fractal_surface(growth_exponent, content).per_residual,
+          std::exp2(-apparent_exponent(growth_exponent, content))};
+}
+
+Grid<float> local_variation(const Surroundings& heights, const ResidualScale& scale, double typical_m,
                             const Workers& workers, Progress& progress) {
-  const double growth = std::exp2(-growth_exponent);
-  const Weights weights{static_cast<float>(growth), static_cast<float>(growth * 0.5 / std::sqrt(27.0)),
-                        growth, static_cast<float>(typical_m)};
+  const Weights weights{static_cast<float>(scale.diagonal),
+                        static_cast<float>(scale.to_half_spacing * 0.5 / std::sqrt(27.0)), scale,
+                        static_cast<float>(typical_m)};
   const int cols = heights.cols(), padded = heights.padded_cols();
   Grid<float> out(heights.rows(), cols);
   for_each_band(heights.rows(), workers, progress, [&](int first, int end) {

@@ -19,8 +19,8 @@ namespace {
 constexpr double kDefaultConfidence = 0.95;
 
 // metres that one sigma_s stands for.
-double metres_of(const DemToTinOptions& options, double level) {
-  return options.error_means == ErrorMeans::kTolerance ? level : two_sided_quantile(level);
+double metres_of(const DemToTinOptions& options, double level, Tails tails) {
+  return options.error_means == ErrorMeans::kTolerance ? level : two_sided_quantile(level, tails);
 }
 
 double first_level(const DemToTinOptions& options) {
@@ -28,11 +28,11 @@ double first_level(const DemToTinOptions& options) {
   return options.error_means == ErrorMeans::kTolerance ? 1 : kDefaultConfidence;
 }
 
-std::vector<double> factors_of(const DemToTinOptions& options) {
-  const double first = metres_of(options, first_level(options));
+std::vector<double> factors_of(const DemToTinOptions& options, Tails tails) {
+  const double first = metres_of(options, first_level(options), tails);
   std::vector<double> factors{1};
   for (std::size_t n = 1; n < options.levels.size(); ++n)
-    factors.push_back(metres_of(options, options.levels[n]) / first);
+    factors.push_back(metres_of(options, options.levels[n], tails) / first);
   return factors;
 }
 
@@ -86,7 +86,7 @@ void say_what_was_lost(const SimplifyOptions& simplify, DemToTin& result) {
 DemToTin run_dem_to_tin(const DemSource& source, const ErrorModel& model, const DemToTinOptions& options,
                         Progress& progress) {
   DemToTin result;
-  result.factors = factors_of(options);
+  factors_of(options, Tails::kNormal);  // refuses what is no confidence
   model.validate();
   const double metres_per_unit = metres_per_plan_unit(source.crs_wkt());
   const Window window = window_of(options.extent, source);
@@ -95,8 +95,10 @@ DemToTin run_dem_to_tin(const DemSource& source, const ErrorModel& model, const 
   progress.begin(0.03, 1);
   const ErrorModel completed = complete_model(model, source, result.warnings, progress);
   result.error_model = completed.describe();
-  ToleranceWindows windows(source, window, completed, metres_of(options, first_level(options)), options.keep,
-                           workers);
+  const Tails tails = completed.tails_used();
+  result.factors = factors_of(options, tails);
+  ToleranceWindows windows(source, window, completed, metres_of(options, first_level(options), tails),
+                           options.keep, workers);
 
   SimplifyOptions simplify;
   simplify.tolerance_m = windows.constant();

@@ -55,7 +55,7 @@ std::size_t planned_memory(const ErrorModel& model, const Window& window) {
 
 ErrorSurfaces run_error_surfaces(const DemSource& source, const ErrorModel& model,
                                  const ErrorSurfacesOptions& options, Progress& progress) {
-  const double z_of_confidence = two_sided_quantile(options.confidence);
+  two_sided_quantile(options.confidence);  // refuses what is none
   model.validate();
   const Window window = window_of(options.extent, source);
   const Georeference georeference = georeference_of(source);
@@ -71,17 +71,19 @@ ErrorSurfaces run_error_surfaces(const DemSource& source, const ErrorModel& mode
 
   progress.begin(0.1, 1);
   const ErrorModel completed = complete_model(model, source, out.warnings, progress);
+  const double z = two_sided_quantile(options.confidence, completed.tails_used());
   progress.begin(0.4, cells);
   out.lower = source.read(window, progress);
   progress.begin(0.3, 1);
   const ErrorField field =
       resolve_error(completed, source, georeference, window, out.lower, out.warnings, workers, progress);
 
+  take_bias_off(completed, out.lower, workers);
   progress.begin(0.2, cells);
   out.sigma = Grid<float>(window.rows, window.cols);
   out.upper = Grid<float>(window.rows, window.cols);
   workers.for_each(static_cast<std::size_t>(window.rows), [&](std::size_t r) {
-    bound_row(field, z_of_confidence, static_cast<int>(r), out);
+    bound_row(field, z, static_cast<int>(r), out);
     progress.advance(window.cols);
   });
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "error_model/wilson.h"
+#include "jobs/early_stop.h"
 #include "jobs/observer_posts.h"
 #include "sight/confidence.h"
 #include "sight/fresnel.h"
@@ -103,8 +103,8 @@ FresnelClearance fresnel_of(const Extremes& extremes, const Scene& scene, const 
 }  // namespace
 
 Window window_for(const Window& lines, const LineExtras& extras, const DemSource& source) {
-  // Of a sample's neighbours depends where the ground may be there (posterior.h), and so that of the line's.
-  constexpr int kAround = 2;
+  // What is drawn beside a line depends on samples farther out (posterior.h).
+  constexpr int kAround = 2 + 4;
   const int around = extras.whole_line ? kAround : 0;
   return with_room(
       intersection({lines.col - around, lines.row - around, lines.cols + 2 * around, lines.rows + 2 * around},
@@ -126,12 +126,13 @@ LineJudge::LineJudge(const DemSource& source, const LoadedTerrain& terrain, cons
             terrain.scene().error,
             terrain.window().row,
             terrain.window().col,
-            extras.whole_line ? extras.whole_line->seed : 0},
-      columns_(open_, false, 0),
-      rows_(open_, true, 0) {}
+            extras.whole_line ? extras.whole_line->seed : 0,
+            terrain.scene().error.surface ? &posterior_.rises : nullptr},
+      columns_(open_, false),
+      rows_(open_, true) {}
 
 std::size_t LineJudge::memory(const Window& window, const LineExtras& extras) {
-  return extras.whole_line ? 2 * sizeof(float) * window.cells() : 0;
+  return extras.whole_line ? 5 * sizeof(float) * window.cells() : 0;  // the posterior
 }
 
 double LineJudge::at(const Grid<float>& values, const GridPlace& place) const {
@@ -214,20 +215,20 @@ WholeLine LineJudge::whole_line(const Eye& eye, const Target& target, const Line
     doubt.wavelength = wavelength_m(extras_.radio->frequency_mhz);
     doubt.zone_share = extras_.radio->zone_share;
   }
-  const LineInDoubt line(terrain_.scene(), open_.mean, eye, target, doubt);
-  RealisedColumns columns = line.over.transposed ? rows_ : columns_;
-  const LineCounts counts = count_clear(line, open_, asked.realisations, columns);
+  const bool transposed = is_transposed(eye, target);
+  const LineInDoubt line(terrain_.scene(), open_, transposed ? rows_ : columns_, eye, target, doubt);
+  const LineCounts counts = count_clear(line, asked.realisations);
 
   WholeLine out;
   const double n = out.realisations = counts.realisations;
   out.seed = asked.seed;
   out.probability = counts.clear / n;
   out.standard_error = std::sqrt(out.probability * (1 - out.probability) / n);
-  out.interval = wilson(out.probability, n);
+  out.interval = wilson(out.probability, n, kZ95);
   out.verdict = out.interval.low >= (1 + options_.confidence) / 2    ? kVisible
                 : out.interval.high <= (1 - options_.confidence) / 2 ? kHidden
                                                                      : kUncertain;
-  out.blocked_bound = blocked_bound(line, open_, columns);
+  out.blocked_bound = blocked_bound(line);
   out.zone_probability = extras_.radio ? counts.zone_clear / n : kNan;
 
   // In the order of the line; of several that block as often, the first.

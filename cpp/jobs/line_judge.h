@@ -51,7 +51,7 @@ class LineJudge {
   const LineExtras& extras_;
   Posterior posterior_;
   OpenTerrain open_;
-  RealisedColumns columns_, rows_;  // to copy from
+  const RealisedColumns columns_, rows_;
 };
 
 }  // namespace sightbound

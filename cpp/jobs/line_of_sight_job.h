@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "error_model/wilson.h"
+#include "jobs/early_stop.h"
 #include "jobs/viewshed_job.h"
 
 namespace sightbound {
@@ -48,7 +48,7 @@ struct WholeLine {
   int realisations = 0;
   std::uint64_t seed = 0;
   double probability = 0, standard_error = 0;  // that the line is clear
-  Interval interval;                           // Wilson's, 95 %
+  ShareInterval interval{0, 1};                // Wilson's, 95 %
   std::uint8_t verdict = kNoVerdict;           // needs the nearer end of the interval to hold
   double blocked_bound = 1;  // the probability of being blocked is no larger (sight/line_bound.h)
   double blocked_x = 0, blocked_y = 0, blocked_distance = 0, blocked_share = 0;  // where most are blocked

@@ -23,6 +23,8 @@ LoadedTerrain::LoadedTerrain(const DemSource& source, const Georeference& georef
     : window_(window), heights_(source.read(window, progress)) {
   if (options.ground) ground_ = ground_at(*options.ground, source, window, progress);
   error_ = resolve_error(model, source, georeference, window, heights_, warnings, workers, progress);
+  take_bias_off(model, heights_, workers);
+  take_bias_off(model, ground_, workers);
   SceneOptions scene;
   scene.confidence = options.confidence;
   scene.refraction = options.refraction;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A window of the DEM in memory with its error resolved, ready for sight.
+// A window of the DEM in memory with its error resolved, ready for sight. What the model says all heights
+// share (shared_bias) is taken off them, and off the ground raster, which is taken to share it.
 #pragma once
 
 #include <memory>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Method. Draw sixteen terrains at a time, look from every observer over all of them at once, count who is
-// seen.
+// Method. Find what is the same in all terrains; draw the others sixteen at a time, look from every observer
+// over all of them, count who is seen, and leave those that are settled.
 #include "jobs/probable_viewshed_job.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,8 +13,9 @@
 #include "base/parallel.h"
 #include "error_model/posterior.h"
 #include "error_model/verdict.h"
-#include "error_model/wilson.h"
 #include "io/crs.h"
+#include "jobs/cells_in_doubt.h"
+#include "jobs/early_stop.h"
 #include "jobs/loaded_terrain.h"
 #include "jobs/observer_posts.h"
 #include "sight/probable_view.h"
@@ -25,11 +25,28 @@ namespace sightbound {
 namespace {
 
 constexpr int kMostRealisations = 65535;
+constexpr std::size_t kMostHeights = kMostLayers - 1;
 
 void check(const ProbableOptions& options) {
   if (options.realisations < 1 || options.realisations > kMostRealisations) {
     throw InvalidInput("realisations is " + std::to_string(options.realisations) + "; give 1 to " +
                        std::to_string(kMostRealisations) + ".");
+  }
+  if (!(options.precision >= 0 && options.precision <= 0.5)) {
+    throw InvalidInput("precision is " + std::to_string(options.precision) +
+                       "; give 0 (draw all realisations) to 0.5.");
+  }
+  if (options.refinement < 0 || options.refinement > 1) {
+    throw InvalidInput("refinement is " + std::to_string(options.refinement) +
+                       "; give 0 (half cells) or 1 (finer near eye and target).");
+  }
+  if (options.heights.size() > kMostHeights) {
+    throw InvalidInput("heights has " + std::to_string(options.heights.size()) + " values; give at most " +
+                       std::to_string(kMostHeights) + ".");
+  }
+  for (const double height : options.heights) {
+    if (!std::isfinite(height) || height < 0)
+      throw InvalidInput("heights has " + std::to_string(height) + "; give metres above ground, 0 or more.");
   }
 }
 
@@ -47,176 +64,166 @@ ViewshedOptions of_loading(const ProbableOptions& options) {
 
 struct Plan {
   Window canvas, terrain;
+  std::size_t bytes;  // but for cells in doubt
 };
 
 Plan plan_memory(const std::vector<Post>& posts, const DemSource& source, const ErrorModel& model,
-                 const ViewshedOptions& options) {
+                 const ViewshedOptions& options, std::size_t heights) {
   Plan plan;
   for (const Post& post : posts) {
     plan.canvas = bounding(plan.canvas, post.reach);
     plan.terrain = bounding(plan.terrain, post.lines);
   }
   if (options.extent) plan.canvas = window_of(options.extent, source);
-  // Rays that targets ask run beside them.
-  constexpr int kBeside = 2;
+  // Rays that targets ask run beside them; what is drawn there depends on samples farther out (posterior.h).
+  constexpr int kBeside = 2 + 4;
   plan.terrain = intersection({plan.terrain.col - kBeside, plan.terrain.row - kBeside,
                                plan.terrain.cols + 2 * kBeside, plan.terrain.rows + 2 * kBeside},
                               source.window());
   plan.terrain = with_room(plan.terrain, source);
-  // Of a cell: the posterior's two values, bits of all and of one observer, a count, what each is asked
-  // about.
-  const std::size_t of_terrain = 2 * sizeof(float) + 3 * sizeof(std::uint16_t) + posts.size();
-  const std::size_t of_canvas = 2 * sizeof(float) + 1;
+  // Of a cell: the posterior's values, who asks, the layers and the place of a cell in doubt; results.
+  const std::size_t of_terrain = 5 * sizeof(float) + 1 + 2 * sizeof(Layers) + sizeof(std::uint32_t);
+  const std::size_t of_canvas = (2 + heights) * sizeof(float) + sizeof(std::uint16_t) + 1;
+  plan.bytes = LoadedTerrain::memory(plan.terrain, model, options).peak + plan.terrain.cells() * of_terrain +
+               plan.canvas.cells() * of_canvas;
   MemoryBudget(options.memory_budget)
-      .require(LoadedTerrain::memory(plan.terrain, model, options).peak + plan.terrain.cells() * of_terrain +
-                   plan.canvas.cells() * of_canvas,
+      .require(plan.bytes,
                "A probable viewshed of " + std::to_string(plan.canvas.cols) + " x " +
                    std::to_string(plan.canvas.rows) + " cells",
                "Give a smaller max_distance or an extent, or allow a larger memory_budget.");
   return plan;
 }
 
-// 0xFFFF where the observer is asked about the cell, else 0.
-SeenBits asked_of(const Post& post, const LoadedTerrain& terrain, const Workers& workers,
-                  Progress& progress) {
+// Whether an observer is asked about a cell of the terrain's grid.
+class Asking {
+ public:
+  Asking(const Post& post, const LoadedTerrain& terrain)
+      : post_(post),
+        terrain_(terrain),
+        window_(terrain.window()),
+        limits_(limits_of(post.observer, terrain.scene().error.larger_side_m)),
+        eye_(interpolate(terrain.scene().heights, post.place.whole_col() - window_.col,
+                         post.place.whole_row() - window_.row) +
+             post.observer.height) {}
+
+  bool operator()(int row, int col) const {
+    const float ground = terrain_.scene().heights.at(row, col);
+    const int r = row + window_.row, c = col + window_.col;
+    if (!post_.targets.contains({c, r, 1, 1}) || std::isnan(ground)) return false;
+    const double x = c - post_.place.base_col, y = r - post_.place.base_row;
+    const FramePlace place = post_.frames.of(x, y).at(x, y);
+    const double distance = place.distance();
+    if (distance < limits_.min_distance || distance > limits_.max_distance) return false;
+    if (!limits_.all_azimuths() && !limits_.admits_azimuth(place.azimuth_deg())) return false;
+    if (limits_.all_angles()) return true;
+    const double rise = ground + post_.observer.target_height - terrain_.scene().bend * place.bulge - eye_;
+    const double angle = std::atan2(rise, distance) * 180 / M_PI;
+    return angle >= limits_.angle_from && angle <= limits_.angle_to;
+  }
+
+ private:
+  const Post& post_;
+  const LoadedTerrain& terrain_;
+  const Window window_;
+  const ViewLimits limits_;
+  const double eye_;
+};
+
+// Who is asked about a cell by any of them.
+Grid<std::uint8_t> asked_of(const std::vector<Post>& posts, const LoadedTerrain& terrain,
+                            const Workers& workers, Progress& progress) {
   const Window& window = terrain.window();
-  const Grid<float>& heights = terrain.scene().heights;
-  const ViewLimits limits = limits_of(post.observer, terrain.scene().error.larger_side_m);
-  const double eye =
-      interpolate(heights, post.place.whole_col() - window.col, post.place.whole_row() - window.row) +
-      post.observer.height;
-  SeenBits asked(window.rows, window.cols, 0);
+  auto asked = Grid<std::uint8_t>::zeros(window.rows, window.cols);
+  std::vector<Asking> asking;
+  for (const Post& post : posts) asking.emplace_back(post, terrain);
   workers.for_each(static_cast<std::size_t>(window.rows), [&](std::size_t n) {
     progress.check();
-    const int row = window.row + static_cast<int>(n);
-    for (int col = window.col; col < window.col_end(); ++col) {
-      const float ground = heights.at(row - window.row, col - window.col);
-      if (!post.targets.contains({col, row, 1, 1}) || std::isnan(ground)) continue;
-      const double x = col - post.place.base_col, y = row - post.place.base_row;
-      const FramePlace place = post.frames.of(x, y).at(x, y);
-      const double distance = place.distance();
-      if (distance < limits.min_distance || distance > limits.max_distance) continue;
-      if (!limits.all_azimuths() && !limits.admits_azimuth(place.azimuth_deg())) continue;
-      if (!limits.all_angles()) {
-        const double rise = ground + post.observer.target_height - terrain.scene().bend * place.bulge - eye;
-        const double angle = std::atan2(rise, distance) * 180 / M_PI;
-        if (angle < limits.angle_from || angle > limits.angle_to) continue;
-      }
-      asked.at(row - window.row, col - window.col) = 0xFFFF;
+    const int row = static_cast<int>(n);
+    for (int col = 0; col < window.cols; ++col) {
+      asked.at(row, col) =
+          std::ranges::any_of(asking, [&](const Asking& asks) { return asks(row, col); }) ? 1 : 0;
     }
   });
   return asked;
 }
 
-class Counting {
+// All terrains that could lie behind the DEM.
+class Behind {
  public:
-  Counting(const std::vector<Post>& posts, const LoadedTerrain& terrain, const ProbableOptions& options,
-           const Workers& workers, Progress& progress)
-      : terrain_(terrain),
-        posterior_(posterior(terrain.scene().heights, terrain.scene().error, workers, progress)),
+  Behind(const LoadedTerrain& terrain, const ProbableOptions& options, const Workers& workers,
+         Progress& progress)
+      : posterior_(posterior(terrain.scene().heights, terrain.scene().error, workers, progress)),
         open_{posterior_.mean.empty() ? terrain.scene().heights : posterior_.mean,
               posterior_.spread,
               terrain.scene().error,
               terrain.window().row,
               terrain.window().col,
-              options.seed},
-        realisations_(options.realisations),
-        workers_(workers) {
-    const Window& window = terrain.window();
-    for (const Post& post : posts) {
-      const ProbableEye eye{
-          &post.frames.widest(),
-          post.place.base_col - window.col,
-          post.place.base_row - window.row,
-          post.observer.height,
-          {post.reach.col - window.col, post.reach.row - window.row, post.reach.cols, post.reach.rows}};
-      views_.emplace_back(open_, eye, post.observer.target_height, terrain.scene().bend);
-      asked_.push_back(asked_of(post, terrain, workers, progress));
-      own_.push_back(post.place.col == 0 && post.place.row == 0 ? Window{eye.base_col, eye.base_row, 1, 1}
-                                                                : Window{});
-    }
-  }
-
-  // Realisations in which an observer sees the cell.
-  Grid<std::uint16_t> counts(double share, Progress& progress) {
-    const Window& window = terrain_.window();
-    Grid<std::uint16_t> counts(window.rows, window.cols, 0);
-    progress.begin(share, (realisations_ + kLanes - 1) / kLanes * static_cast<double>(views_.size()));
-    for (int first = 0; first < realisations_; first += kLanes) {
-      const int lanes = std::min(kLanes, realisations_ - first);
-      SeenBits any = Grid<std::uint16_t>::zeros(window.rows, window.cols);
-      for (std::size_t i = 0; i < views_.size(); ++i)
-        look(i, static_cast<std::uint32_t>(first), any, progress);
-      const auto used = static_cast<std::uint16_t>((1u << lanes) - 1);
-      workers_.for_each(static_cast<std::size_t>(window.rows), [&](std::size_t n) {
-        const int r = static_cast<int>(n);
-        for (int c = 0; c < window.cols; ++c) {
-          const auto bits = static_cast<std::uint16_t>(any.at(r, c) & used);
-          counts.at(r, c) = static_cast<std::uint16_t>(counts.at(r, c) + std::popcount(bits));
-        }
-      });
-    }
-    return counts;
-  }
-  bool asked(int row, int col) const {
-    return std::any_of(asked_.begin(), asked_.end(),
-                       [&](const SeenBits& one) { return one.at(row, col) != 0; });
-  }
+              options.seed,
+              terrain.scene().error.surface ? &posterior_.rises : nullptr} {}
+  const OpenTerrain& open() const { return open_; }
 
  private:
-  void look(std::size_t i, std::uint32_t first, SeenBits& any, Progress& progress) {
-    const ProbableView& view = views_[i];
-    SeenBits seen = Grid<std::uint16_t>::zeros(any.rows(), any.cols());
-    const double part = 1.0 / static_cast<double>(view.blocks());
-    workers_.for_each(view.blocks(), [&](std::size_t block) {
-      progress.check();
-      view.march(block, first, seen);
-      progress.advance(part);
-    });
-    if (own_[i].cols > 0) seen.at(own_[i].row, own_[i].col) = 0xFFFF;
-    workers_.for_each(static_cast<std::size_t>(any.rows()), [&](std::size_t n) {
-      const int r = static_cast<int>(n);
-      const std::uint16_t *from = seen.row(r), *asked = asked_[i].row(r);
-      std::uint16_t* to = any.row(r);
-      for (int c = 0; c < any.cols(); ++c) to[c] = static_cast<std::uint16_t>(to[c] | (from[c] & asked[c]));
-    });
-  }
-
-  const LoadedTerrain& terrain_;
   const Posterior posterior_;
   const OpenTerrain open_;
-  const int realisations_;
-  const Workers& workers_;
-  std::vector<ProbableView> views_;
-  std::vector<SeenBits> asked_;
-  std::vector<Window> own_;  // the cell that an observer stands on exactly
 };
 
-void say_what_was_seen(const Counting& counting, const Grid<std::uint16_t>& counts,
-                       const LoadedTerrain& terrain, const Window& canvas, double confidence,
-                       ProbableViewshed& result) {
+std::vector<ProbableView> views_of(const std::vector<Post>& posts, const LoadedTerrain& terrain,
+                                   const OpenTerrain& open, const ProbableOptions& options) {
   const Window& window = terrain.window();
-  const double n = result.report.realisations;
-  result.probability = Grid<float>(canvas.rows, canvas.cols, std::numeric_limits<float>::quiet_NaN());
-  result.standard_error = Grid<float>(canvas.rows, canvas.cols, std::numeric_limits<float>::quiet_NaN());
+  const Refinement refinement = options.refinement > 0 ? Refinement::end_zones() : Refinement::none();
+  std::vector<ProbableView> views;
+  for (const Post& post : posts) {
+    const ProbableEye eye{
+        &post.frames.widest(),
+        post.place.base_col - window.col,
+        post.place.base_row - window.row,
+        post.observer.height,
+        {post.reach.col - window.col, post.reach.row - window.row, post.reach.cols, post.reach.rows},
+        Asking(post, terrain)};
+    std::vector<float> heights{static_cast<float>(post.observer.target_height)};
+    for (const double height : options.heights) heights.push_back(static_cast<float>(height));
+    views.emplace_back(open, eye, std::move(heights), terrain.scene().bend, refinement);
+  }
+  return views;
+}
+
+void say_what_was_seen(const CellsInDoubt& cells, const Grid<std::uint8_t>& asked, const EarlyStop& stop,
+                       const LoadedTerrain& terrain, const Window& canvas, ProbableViewshed& result) {
+  const Window& window = terrain.window();
+  const auto empty = [&] {
+    return Grid<float>(canvas.rows, canvas.cols, std::numeric_limits<float>::quiet_NaN());
+  };
+  result.probability = empty();
+  result.standard_error = empty();
+  for (std::size_t n = 0; n < result.report.heights.size(); ++n) result.at_heights.push_back(empty());
   result.verdict = Grid<std::uint8_t>(canvas.rows, canvas.cols, kNoVerdict);
+  result.realisations = Grid<std::uint16_t>(canvas.rows, canvas.cols, 0);
+  ProbableReport& report = result.report;
+  const int most = report.realisations;
   const Window both = intersection(window, canvas);
   for (int row = both.row; row < both.row_end(); ++row) {
     const double area = terrain.cell_areas()[static_cast<std::size_t>(row - window.row)];
     for (int col = both.col; col < both.col_end(); ++col) {
-      if (!counting.asked(row - window.row, col - window.col)) continue;
-      const double p = counts.at(row - window.row, col - window.col) / n;
-      const Interval known = wilson(p, n);
-      const bool visible = known.low >= (1 + confidence) / 2, hidden = known.high <= (1 - confidence) / 2;
-      result.probability.at(row - canvas.row, col - canvas.col) = static_cast<float>(p);
-      result.standard_error.at(row - canvas.row, col - canvas.col) =
-          static_cast<float>(std::sqrt(p * (1 - p) / n));
-      result.verdict.at(row - canvas.row, col - canvas.col) =
-          visible ? kVisible : (hidden ? kHidden : kUncertain);
-      result.report.expected_m2 += p * area;
-      (visible  ? result.report.visible_m2
-       : hidden ? result.report.hidden_m2
-                : result.report.uncertain_m2) += area;
+      const int r = row - window.row, c = col - window.col, i = row - canvas.row, j = col - canvas.col;
+      if (asked.at(r, c) == 0) continue;
+      const auto [p, n, proven] = cells.answer(r, c, 0, most);
+      const double error = std::sqrt(p * (1 - p) / n);
+      const std::uint8_t sure = p > 0 ? kVisible : kHidden;
+      const std::uint8_t verdict = proven ? sure : stop.claim(p, stop.look_at(n));
+      result.probability.at(i, j) = static_cast<float>(p);
+      result.standard_error.at(i, j) = static_cast<float>(error);
+      result.verdict.at(i, j) = verdict;
+      result.realisations.at(i, j) = static_cast<std::uint16_t>(n);
+      for (std::size_t l = 0; l < result.at_heights.size(); ++l) {
+        result.at_heights[l].at(i, j) =
+            static_cast<float>(cells.answer(r, c, static_cast<int>(l) + 1, most).share);
+      }
+      report.expected_m2 += p * area;
+      report.largest_standard_error = std::max(report.largest_standard_error, error);
+      report.in_doubt_m2 += proven ? 0 : area;
+      (verdict == kVisible  ? report.visible_m2
+       : verdict == kHidden ? report.hidden_m2
+                            : report.uncertain_m2) += area;
     }
   }
 }
@@ -237,6 +244,14 @@ void place_eyes(const std::vector<Post>& posts, const LoadedTerrain& terrain, Pr
   }
 }
 
+// An observer sees what he stands on.
+void see_own_cells(const std::vector<Post>& posts, const Window& window, CellsInDoubt& cells) {
+  for (const Post& post : posts) {
+    if (post.place.col == 0 && post.place.row == 0)
+      cells.add_seen(post.place.base_row - window.row, post.place.base_col - window.col);
+  }
+}
+
 }  // namespace
 
 ProbableViewshed run_probable_viewshed(const DemSource& source, const std::vector<Observer>& observers,
@@ -250,10 +265,11 @@ ProbableViewshed run_probable_viewshed(const DemSource& source, const std::vecto
   ProbableViewshed result;
   ProbableReport& report = result.report;
   report.realisations = options.realisations;
+  report.heights = options.heights;
 
   const Georeference georeference = georeference_of(source);
   const std::vector<Post> posts = place_observers(source, georeference, observers, options.extent, progress);
-  const Plan plan = plan_memory(posts, source, model, loading);
+  const Plan plan = plan_memory(posts, source, model, loading, options.heights.size());
   progress.begin(0.05, 1);
   const ErrorModel completed = complete_model(model, source, report.warnings, progress);
   report.error_model = completed.describe();
@@ -261,9 +277,14 @@ ProbableViewshed run_probable_viewshed(const DemSource& source, const std::vecto
   const LoadedTerrain terrain(source, georeference, plan.terrain, completed, loading, report.warnings,
                               workers, progress);
   place_eyes(posts, terrain, report);
-  Counting counting(posts, terrain, options, workers, progress);
-  const Grid<std::uint16_t> counts = counting.counts(0.88, progress);
-  say_what_was_seen(counting, counts, terrain, plan.canvas, options.confidence, result);
+  const Grid<std::uint8_t> asked = asked_of(posts, terrain, workers, progress);
+  const Behind behind(terrain, options, workers, progress);
+  std::vector<ProbableView> views = views_of(posts, terrain, behind.open(), options);
+  const EarlyStop stop(options.realisations, options.confidence, options.precision);
+  CellsInDoubt cells(plan.terrain.rows, plan.terrain.cols, static_cast<int>(options.heights.size()) + 1);
+  cells.count(views, stop, MemoryBudget(options.memory_budget), plan.bytes, workers, progress, 0.88);
+  see_own_cells(posts, plan.terrain, cells);
+  say_what_was_seen(cells, asked, stop, terrain, plan.canvas, result);
 
   const std::vector<std::string> notes = source.notes();
   report.warnings.insert(report.warnings.begin(), notes.begin(), notes.end());
@@ -271,6 +292,8 @@ ProbableViewshed run_probable_viewshed(const DemSource& source, const std::vecto
     result.probability.flip_rows();
     result.standard_error.flip_rows();
     result.verdict.flip_rows();
+    result.realisations.flip_rows();
+    for (Grid<float>& one : result.at_heights) one.flip_rows();
   }
   result.geotransform = delivered_geotransform(source, plan.canvas);
   result.crs_wkt = source.crs_wkt();

@@ -15,7 +15,12 @@ struct ProbableOptions {
   double confidence = 0.95;
   double refraction = 0.13;
   bool curvature = true;
-  int realisations = 1000;
+  int realisations = 1000;  // at most
+  // A cell is left when the interval of its probability is no wider than twice this, and its claim is clear
+  // (early_stop.h); 0 = never.
+  double precision = 0.03;
+  int refinement = 1;           // 0: ground has nodes half a cell apart; 1: finer ones near eye and target
+  std::vector<double> heights;  // of targets above ground, metres, besides the observers' own; at most 15
   std::uint64_t seed = 1;
   std::optional<Extent> extent;   // snapped outward to the DEM's grid; empty = the observers' reach
   int threads = 0;                // 0 = all cores
@@ -24,7 +29,10 @@ struct ProbableOptions {
 
 struct ProbableReport {
   std::vector<ObserverReport> observers;  // heights on the DEM; areas of the whole are below
-  int realisations = 0;
+  int realisations = 0;                   // the most that a cell could have
+  double largest_standard_error = 0;      // reached, of all cells
+  double in_doubt_m2 = 0;                 // not the same in all terrains: what had to be drawn
+  std::vector<double> heights;            // as asked for
   double visible_m2 = 0, uncertain_m2 = 0, hidden_m2 = 0;
   double expected_m2 = 0;  // visible area: the sum of all probabilities
   std::string error_model;
@@ -33,11 +41,16 @@ struct ProbableReport {
 
 // All grids in the user's row order, with `geotransform`.
 struct ProbableViewshed {
-  Grid<float> probability;     // that an observer sees the cell, 0..1; NaN = nodata or not asked
-  Grid<float> standard_error;  // of that, from the number of realisations
-  // A claim at the confidence c: visible when the lower end of the interval of 95 % for the probability
-  // (Wilson 1927) is (1 + c) / 2 or more, hidden when its upper end is (1 - c) / 2 or less.
+  Grid<float> probability;           // that an observer sees the cell, 0..1; NaN = nodata or not asked
+  Grid<float> standard_error;        // of that, from the number of realisations
+  Grid<std::uint16_t> realisations;  // that it comes from
+  // A claim at the confidence c: visible when the interval of 95 % for the probability (EarlyStop) is
+  // (1 + c) / 2 or more, hidden when it is (1 - c) / 2 or less. What is the same in all terrains that could
+  // be drawn is claimed whatever their number.
   Grid<std::uint8_t> verdict;
+  // For each of the heights: the probability that a target of that height is seen, which is that the lowest
+  // visible height is no more than this.
+  std::vector<Grid<float>> at_heights;
   Geotransform geotransform;
   std::string crs_wkt;
   ProbableReport report;

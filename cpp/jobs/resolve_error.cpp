@@ -36,18 +36,24 @@ bool is_grid(const Quantity& quantity) {
   return std::holds_alternative<RasterFile>(quantity) || std::holds_alternative<SharedGrid>(quantity);
 }
 
-// What is left to the DEM becomes one number for sigma_v, a map for Delta.
+bool from_dem(const ErrorModel& model) { return std::holds_alternative<FromDem>(model.geologic_variation); }
+
+CellContent content_of(const ErrorModel& model) {
+  return model.samples_or_means.value_or(CellContent::kSamples);
+}
+
+// What is left to the DEM becomes one number for sigma_v, a map for Delta. The map of means opens the heights
+// at their own places too.
 bool has_sampling_grid(const ErrorModel& model) {
-  return model.horizontal_rmse > 0 || is_grid(model.vertical_rmse);
+  return model.horizontal_rmse > 0 || is_grid(model.vertical_rmse) ||
+         (from_dem(model) && content_of(model) == CellContent::kMeans);
 }
 
 bool has_geologic_grid(const ErrorModel& model) {
   return model.terrain_types.has_value() || !std::holds_alternative<double>(model.geologic_variation);
 }
 
-bool needs_neighbours(const ErrorModel& model) {
-  return model.horizontal_rmse > 0 || std::holds_alternative<FromDem>(model.geologic_variation);
-}
+bool needs_neighbours(const ErrorModel& model) { return model.horizontal_rmse > 0 || from_dem(model); }
 
 void require_allowed(const Grid<float>& values, const char* field, const std::string& where) {
   for (const float value : values.values()) {
@@ -102,8 +108,9 @@ SampleField base_amplitude(const Job& job, const Surroundings* heights) {
   if (const auto* metres = std::get_if<double>(&variation))
     return SampleField(static_cast<float>(*metres / kZ95));
   if (std::holds_alternative<FromDem>(variation)) {
-    return SampleField(local_variation(*heights, *job.model.growth_exponent, *job.model.typical_m,
-                                       job.workers, job.progress));
+    const ResidualScale scale =
+        residual_scale(*job.model.growth_exponent, content_of(job.model), job.model.local_scale.value_or(1));
+    return SampleField(local_variation(*heights, scale, *job.model.typical_m, job.workers, job.progress));
   }
   Grid<float> delta = grid_of(variation, "geologic_variation", job);
   scale(delta, 1 / kZ95, job);
@@ -164,6 +171,25 @@ GrowthProfile profile_of(const ErrorModel& model, double larger_side_m) {
   return profile;
 }
 
+// Of means, the share of the map that is open at a sample's own place is an error of its height.
+void share_with_samples(ErrorField& field, const Job& job) {
+  const auto node = static_cast<float>(field.surface->node);
+  if (node == 0) return;
+  Grid<float> map = field.amplitude.release();
+  Grid<float> sampling = field.sampling.is_constant()
+                             ? Grid<float>(map.rows(), map.cols(), field.sampling.constant())
+                             : field.sampling.release();
+  job.workers.for_each(index(map.rows()), [&](std::size_t r) {
+    float *amplitude = map.row(static_cast<int>(r)), *own = sampling.row(static_cast<int>(r));
+    for (int c = 0; c < map.cols(); ++c) {
+      own[c] += node * amplitude[c];
+      amplitude[c] *= 1 - node;
+    }
+  });
+  field.amplitude = SampleField(std::move(map));
+  field.sampling = SampleField(std::move(sampling));
+}
+
 // Cell sizes and what follows from them. A sample's cell reaches into the squares above and below it.
 void add_geometry(ErrorField& field, const Job& job, const Georeference& georeference) {
   const int above = std::min(job.window.row, 1);
@@ -176,6 +202,11 @@ void add_geometry(ErrorField& field, const Job& job, const Georeference& georefe
         0.5 * std::max(std::hypot(cell.col_m, cell.row_m), std::hypot(before.col_m, before.row_m)));
   }
   field.larger_side_m = larger_cell_side(georeference, job.source.rows(), job.source.cols());
+  if (!from_dem(job.model)) return;
+  const Window middle{0, job.source.rows() / 2, job.source.cols(), 1};
+  const CellSize cell = ground_cell_sizes(georeference, middle).front();
+  field.surface = fractal_surface(*job.model.growth_exponent, content_of(job.model), cell.row_m / cell.col_m);
+  field.ridge_gain = job.model.ridge_gain.value_or(0);
 }
 
 }  // namespace
@@ -184,7 +215,7 @@ ErrorModel complete_model(const ErrorModel& model, const DemSource& source,
                           std::vector<std::string>& warnings, Progress& progress) {
   model.validate();
   if (!model.needs_estimate()) return model;
-  const Estimate learnt = estimate(source, progress);
+  const Estimate learnt = estimate(source, model.samples_or_means, progress);
   warnings.insert(warnings.end(), learnt.warnings.begin(), learnt.warnings.end());
   return with_estimate(model, learnt);
 }
@@ -199,6 +230,7 @@ ErrorField resolve_error(const ErrorModel& completed, const DemSource& source,
   ErrorField field;
   add_geometry(field, job, georeference);
   field.profile = profile_of(completed, field.larger_side_m);
+  field.tails = completed.tails_used();
 
   SampleField sigma_v = given_sigma_v(job);
   std::optional<Surroundings> around;
@@ -208,6 +240,7 @@ ErrorField resolve_error(const ErrorModel& completed, const DemSource& source,
                                         field.cell_sizes, workers, progress)
                        : std::move(sigma_v);
   field.amplitude = base_amplitude(job, around ? &*around : nullptr);
+  if (field.surface) share_with_samples(field, job);
   if (completed.terrain_types) field.amplitude = with_terrain_types(std::move(field.amplitude), job);
 
   if (is_grid(completed.vertical_rmse)) {
@@ -217,6 +250,14 @@ ErrorField resolve_error(const ErrorModel& completed, const DemSource& source,
     warn_of_holes(make_holes(field.amplitude, heights), "geologic_variation", window, warnings);
   }
   return field;
+}
+
+void take_bias_off(const ErrorModel& model, Grid<float>& heights, const Workers& workers) {
+  if (model.shared_bias == 0) return;
+  workers.for_each(index(heights.rows()), [&](std::size_t r) {
+    float* row = heights.row(static_cast<int>(r));
+    for (int c = 0; c < heights.cols(); ++c) row[c] = static_cast<float>(row[c] - model.shared_bias);
+  });
 }
 
 ResolveMemory resolve_error_memory(const ErrorModel& model, const Window& window) {

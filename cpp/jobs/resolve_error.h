@@ -29,6 +29,10 @@ ErrorField resolve_error(const ErrorModel& completed, const DemSource&, const Ge
                          const Window& window, Grid<float>& heights, std::vector<std::string>& warnings,
                          const Workers&, Progress&);
 
+// What all samples share, taken off: the heights become those of the ground itself. For sight and for
+// surfaces in absolute heights; what simplifies keeps the DEM's own.
+void take_bias_off(const ErrorModel&, Grid<float>& heights, const Workers&);
+
 // Memory that resolve_error takes beyond `heights`: while at work, and by its result.
 struct ResolveMemory {
   std::size_t peak = 0, kept = 0;  // bytes

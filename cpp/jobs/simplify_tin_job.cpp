@@ -36,7 +36,7 @@ void tell(const TinTolerance& tolerance, const SimplifyTinJob& job, SimplifyTinR
     report.border_tolerance_m = *job.border_tolerance_m;
   } else if (report.vertical) {
     report.border_tolerance_m =
-        metres ? 0 : two_sided_quantile(tolerance.confidence) * job.model.horizontal_rmse;
+        metres ? 0 : two_sided_quantile(tolerance.confidence, tolerance.tails) * job.model.horizontal_rmse;
   } else {
     report.border_tolerance_m = tolerance.least;
   }
@@ -49,6 +49,7 @@ GridContainment grid_of(const Tin& tin, TinTolerance& tolerance, const SimplifyT
   const auto surface = std::make_shared<TinSurface>(tin, std::move(tolerance.error), Metric::kNormal);
   VolumeOptions options;
   options.confidence = options.largest_confidence = tolerance.confidence;
+  options.tails = tolerance.tails;
   options.threads = job.threads;
   options.memory_bytes = job.memory_budget;
   options.voxel_m = job.voxel_m;
@@ -60,7 +61,8 @@ GridContainment grid_of(const Tin& tin, TinTolerance& tolerance, const SimplifyT
                  "Give a larger voxel_m, or a part of the TIN.");
   CoverMasks covers = build_covers(surface, options.confidence, options, progress);
   report.voxel_m = covers.voxel_m;
-  const HeldFaces held = count_held(*surface, {covers.voxel_m, covers.voxel_height_m}, options.confidence);
+  const HeldFaces held =
+      count_held(*surface, {covers.voxel_m, covers.voxel_height_m}, options.confidence, options.tails);
   report.faces_not_held = held.not_held;
   if (held.not_held > 0)
     report.warnings.push_back(too_coarse(held, covers.voxel_m, wanted, job.voxel_m == 0));

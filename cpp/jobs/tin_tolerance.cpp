@@ -69,7 +69,8 @@ TinTolerance tolerance_of(const Tin& tin, const SimplifyTinJob& job, Metric metr
   TinTolerance result;
   result.error = resolve_tin_error(tin, job.model, metric);
   result.confidence = job.confidence;
-  const double z = two_sided_quantile(job.confidence);
+  result.tails = job.model.tails_used();
+  const double z = two_sided_quantile(job.confidence, result.tails);
   result.least = std::numeric_limits<double>::infinity();
   for (std::size_t v = 0; v < result.error.sampling.size(); ++v) {
     const double sigma = static_cast<double>(result.error.sampling[v]);

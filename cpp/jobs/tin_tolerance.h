@@ -13,6 +13,7 @@ struct TinTolerance {
   std::vector<float> metres;  // at each vertex, linear on each face; rounded down
   TinError error;             // at `confidence` its volume is where the surface may be
   double confidence = 0;
+  Tails tails = Tails::kNormal;
   double least = 0, largest = 0;  // metres, with what is between the samples
 };
 

@@ -99,8 +99,9 @@ VisibilityTolerance run_visibility_tolerance(const DemSource& source, const std:
   progress.begin(0.3, 1);
   const LoadedTerrain terrain(source, georeference, whole, completed, claims, result.warnings, workers,
                               progress);
-  const double own = std::min(
-      tolerance_m, kOwnPart * two_sided_quantile(options.confidence) * least_sampling(terrain.scene()));
+  const double own =
+      std::min(tolerance_m, kOwnPart * two_sided_quantile(options.confidence, completed.tails_used()) *
+                                least_sampling(terrain.scene()));
   progress.begin(0.55, static_cast<double>(observers.size()));
   const DeadGround dead =
       dead_ground(source, terrain, georeference, observers, tolerance_m, own, workers, progress);

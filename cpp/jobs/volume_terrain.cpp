@@ -36,11 +36,13 @@ VolumeTerrain volume_terrain(const DemSource& source, const ErrorModel& model,
   progress.begin(0.1, 1);
   input.error = resolve_error(completed, source, georeference, window, input.heights, terrain.warnings,
                               workers, progress);
+  take_bias_off(completed, input.heights, workers);
   input.geotransform = source.geotransform().of_window(window);
   input.metres_per_unit = metres_per_unit;
   input.crs_wkt = horizontal_crs(source.crs_wkt());
   terrain.surface = std::make_shared<DemSurface>(std::move(input));
   terrain.error_model = completed.describe();
+  terrain.tails = completed.tails_used();
   const std::vector<std::string> notes = source.notes();  // reading adds to them
   terrain.warnings.insert(terrain.warnings.begin(), notes.begin(), notes.end());
   return terrain;
@@ -48,18 +50,24 @@ VolumeTerrain volume_terrain(const DemSource& source, const ErrorModel& model,
 
 VolumeTerrain volume_terrain(const Tin& tin, const ErrorModel& model) {
   const Metric metric = TinSurface::metric_of(tin);
+  Tin truth = tin;
+  for (Xyz& vertex : truth.vertices) vertex.z -= model.shared_bias;
   VolumeTerrain terrain;
-  terrain.surface = std::make_shared<TinSurface>(tin, resolve_tin_error(tin, model, metric), metric);
+  terrain.surface =
+      std::make_shared<TinSurface>(std::move(truth), resolve_tin_error(tin, model, metric), metric);
   terrain.error_model = model.describe();
+  terrain.tails = model.tails_used();
   terrain.warnings = tin.notes;
   return terrain;
 }
 
-VolumeNeed need_of(const VolumeTerrain& terrain, const VolumeOptions& options) {
+VolumeNeed need_of(const VolumeTerrain& terrain, VolumeOptions options) {
+  options.tails = terrain.tails;
   return estimate_need(*terrain.surface, options);
 }
 
 ErrorVolume build_volume(const VolumeTerrain& terrain, VolumeOptions options, Progress& progress) {
+  options.tails = terrain.tails;
   options.error_model = terrain.error_model;
   return ErrorVolume::build(terrain.surface, options, progress);
 }

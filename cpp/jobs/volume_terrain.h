@@ -20,6 +20,7 @@ namespace sightbound {
 struct VolumeTerrain {
   std::shared_ptr<const Surface> surface;
   std::string error_model;  // JSON of what was used
+  Tails tails = Tails::kNormal;
   std::vector<std::string> warnings;
 };
 
@@ -29,6 +30,8 @@ struct VolumeTerrainOptions {
   std::size_t memory_budget = 0;  // bytes; 0 = three quarters of the machine's memory
 };
 
+// The model's shared_bias is taken off the heights.
+//
 // The error is measured vertically. Throws InvalidInput (degrees: reproject), IoError, OverBudget, Cancelled.
 VolumeTerrain volume_terrain(const DemSource&, const ErrorModel&, const VolumeTerrainOptions&, Progress&);
 // Vertically for height fields, else along the normal. Nothing can be learnt from a TIN: vertical_rmse
@@ -37,7 +40,7 @@ VolumeTerrain volume_terrain(const Tin&, const ErrorModel&);
 
 // Need of the volume beside the terrain's own bytes; ErrorVolume::build() with the same terrain. `options` as
 // there.
-VolumeNeed need_of(const VolumeTerrain&, const VolumeOptions&);
+VolumeNeed need_of(const VolumeTerrain&, VolumeOptions);
 ErrorVolume build_volume(const VolumeTerrain&, VolumeOptions, Progress&);
 
 }  // namespace sightbound

@@ -13,11 +13,11 @@ namespace sightbound {
 
 inline constexpr std::uint32_t kNoCount = 4294967295u;
 
-// p = Phi(k*); settled k* never leave [-K, K], and there p is 0 or 1.
+// p = F(k*); settled k* never leave [-K, K], and there p is 0 or 1.
 inline float probability(const Scene& scene, double k) {
   if (k >= scene.largest_ratio) return 1;
   if (k <= -scene.largest_ratio) return 0;
-  return static_cast<float>(normal_cdf(k));
+  return static_cast<float>(cdf(k, scene.error.tails));
 }
 
 // A claim at confidence c is visible when p >= (1 + c) / 2, that is k* >= z(c).

@@ -65,6 +65,9 @@ SIGHTBOUND_INLINE float minus_log(float x) {
   return -(ln_m + 0.69314718056f * exponent);
 }
 
+// No draw is farther from 0: the 23 bits that normal_from uses end at 5.3.
+inline constexpr float kLargestDraw = 5.4f;
+
 // Standard normal: the inverse of its distribution function (Giles 2010, single precision).
 SIGHTBOUND_INLINE float normal_from(std::uint32_t bits) {
   const float x =

@@ -3,77 +3,112 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace sightbound {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::int64_t kDrawsOfSample = 8;
-constexpr std::uint64_t kOtherDraws = 0x66696e65;  // than those of the nodes
+constexpr std::uint64_t kFineDraws = 0x66696e65, kCrossingDraws = 0x63726f73;  // than those of the nodes
 
-SIGHTBOUND_VECTOR
-void draw_middle(const DrawKey& key, std::uint32_t first, const Lanes& a, const Lanes& b, float spread,
-                 Lanes& out) {
-  for (int l = 0; l < kLanes; ++l) {
-    out.v[l] = 0.5f * (a.v[l] + b.v[l]) +
-               spread * normal_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
-  }
-}
+// Of each number that goes into a slope: more than the roundings of a realisation differ from those of a
+// bound, some units of the 24th bit.
+constexpr float kRounding = 1e-6f;
 
-SIGHTBOUND_VECTOR
-void raise_to(const Lanes& ground, const Lanes& eye, float per_s, float drop, Lanes& horizon) {
-  for (int l = 0; l < kLanes; ++l) {
-    const float rise = (ground.v[l] - eye.v[l]) * per_s - drop;
-    horizon.v[l] = larger(rise == rise ? rise : kInfinity, horizon.v[l]);
-  }
+RayPlace half_way(const RayPlace& a, const RayPlace& b) {
+  return {0.5 * (a.major + b.major), 0.5 * (a.minor + b.minor), 0.5 * (a.s + b.s)};
 }
 
 }  // namespace
 
-void raise_horizon(const RayPlace& at, const RaySlopes& slopes, Lanes& horizon) {
-  raise_to(at.ground, slopes.eye, static_cast<float>(1 / at.s), static_cast<float>(slopes.per_2r * at.s),
-           horizon);
+HeightRange slope_range(const HeightRange& ground, const HeightRange& eye, const RaySlope& slope) {
+  const float size =
+      larger(std::abs(ground.low), std::abs(ground.high)) + larger(std::abs(eye.low), std::abs(eye.high));
+  const float room = kRounding * (size * slope.per_s + std::abs(slope.drop));
+  return {(ground.low - eye.high) * slope.per_s - slope.drop - room,
+          (ground.high - eye.low) * slope.per_s - slope.drop + room};
 }
 
-void FineGround::raise(const RayPlace& a, const RayPlace& b, int depth, const RaySlopes& slopes,
-                       Lanes& horizon) const {
-  const RayPlace between = middle(a, b);
-  raise_horizon(between, slopes, horizon);
-  if (depth > 1) {
-    raise(a, between, depth - 1, slopes, horizon);
-    raise(between, b, depth - 1, slopes, horizon);
-  }
-}
+FineGround::FineGround(const OpenTerrain& terrain, bool transposed, int base_row, int base_col)
+    : terrain_(terrain),
+      transposed_(transposed),
+      base_row_(base_row),
+      base_col_(base_col),
+      half_across_(terrain.error.larger_side_m / 4),
+      across_per_amplitude_(per_amplitude(half_across_)) {}
 
-RayPlace FineGround::middle(const RayPlace& a, const RayPlace& b) const {
-  RayPlace middle;
-  middle.major = 0.5 * (a.major + b.major);
-  middle.minor = 0.5 * (a.minor + b.minor);
-  middle.s = 0.5 * (a.s + b.s);
-  const double row = transposed_ ? middle.major : middle.minor,
-               col = transposed_ ? middle.minor : middle.major;
+DrawKey FineGround::key_of(double row, double col, std::uint64_t kind) const {
   const auto eighth = [](double x, std::int64_t base) {
     return static_cast<std::int64_t>(std::floor(static_cast<double>(kDrawsOfSample) * x)) +
            kDrawsOfSample * base;
   };
-  const DrawKey key = draw_key(terrain_.seed ^ kOtherDraws, eighth(row, terrain_.row + base_row_),
-                               eighth(col, terrain_.col + base_col_));
-  draw_middle(key, first_, a.ground, b.ground, spread_between(a, b), middle.ground);
-  return middle;
+  return draw_key(terrain_.seed ^ kind, eighth(row, terrain_.row + base_row_),
+                  eighth(col, terrain_.col + base_col_));
 }
 
-float FineGround::spread_between(const RayPlace& a, const RayPlace& b) const {
-  const double major = 0.5 * (a.major + b.major), minor = 0.5 * (a.minor + b.minor);
-  const double row = transposed_ ? major : minor, col = transposed_ ? minor : major;
+Departure FineGround::across(const RayPlace& place, double part) const {
+  return {key_of(row_of(place), col_of(place), kCrossingDraws), spread_across(place, part)};
+}
+
+float FineGround::spread_across(const RayPlace& place, double part) const {
+  const float middle = spread(row_of(place), col_of(place), half_across_, across_per_amplitude_);
+  return static_cast<float>(middle * std::sqrt(4 * part * (1 - part)));
+}
+
+FinePlace FineGround::middle(const RayPlace& a, const RayPlace& b, double per_2r) const {
+  const RayPlace place = half_way(a, b);
+  const double row = row_of(place), col = col_of(place), half_m = 0.5 * std::abs(b.s - a.s);
+  return {{key_of(row, col, kFineDraws), spread(row, col, half_m, per_amplitude(half_m))},
+          ray_slope(place.s, per_2r)};
+}
+
+void FineGround::between(const RayPlace& a, const RayPlace& b, double per_2r, Fineness fineness,
+                         FinePlaces& out) const {
+  if (fineness == Fineness::kNone) return;
+  out[0] = middle(a, b, per_2r);
+  if (fineness == Fineness::kHalves) return;
+  const RayPlace half = half_way(a, b);
+  out[1] = middle(a, half, per_2r);
+  out[2] = middle(half, b, per_2r);
+}
+
+float FineGround::highest(const FinePlaces& places, Fineness fineness, const HeightRange& a,
+                          const HeightRange& b, const HeightRange& eye) const {
+  const auto between = [&](const FinePlace& place, const HeightRange& from, const HeightRange& to) {
+    const float most = terrain_.largest_draw * place.draw.spread;
+    return HeightRange{0.5f * (from.low + to.low) - most, 0.5f * (from.high + to.high) + most};
+  };
+  const auto rise = [&](const FinePlace& place, const HeightRange& ground) {
+    return slope_range(ground, eye, place.slope).high;
+  };
+  const HeightRange half = between(places[0], a, b);
+  if (fineness == Fineness::kHalves) return rise(places[0], half);
+  return std::max({rise(places[0], half), rise(places[1], between(places[1], a, half)),
+                   rise(places[2], between(places[2], half, b))});
+}
+
+double FineGround::per_amplitude(double half_m) const {
+  const ErrorField& error = terrain_.error;
+  const GrowthProfile& profile = error.profile;
+  if (!error.surface || !terrain_.rises) {
+    const bool by_amplitude = profile.shape == GeologicShape::kGaussian && profile.range_m == 0;
+    return by_amplitude ? NAN : profile(half_m, 0);
+  }
+  // Self-affine: the side of a cell in small, with both ends and the ground beside it known.
+  const double side = 0.5 * (error.surface->row_edge.spread + error.surface->col_edge.spread);
+  return error.plain_per_amplitude() * error.surface->points * side *
+         std::pow(half_m / profile.half_spacing_m, profile.exponent);
+}
+
+float FineGround::spread(double row, double col, double half_m, double per_amplitude) const {
   const auto nearest = [](double x, int base, int count) {
-    return std::clamp(base + static_cast<int>(std::lround(x)), 0, count - 1);
+    return std::clamp(base + static_cast<int>(std::floor(x + 0.5)), 0, count - 1);
   };
   const double amplitude = terrain_.error.amplitude.at(nearest(row, base_row_, terrain_.mean.rows()),
                                                        nearest(col, base_col_, terrain_.mean.cols()));
-  const double half_m = 0.5 * std::abs(b.s - a.s);
-  return amplitude > 0 ? static_cast<float>(amplitude * terrain_.error.profile(half_m, amplitude)) : 0.0f;
+  if (amplitude <= 0) return 0;
+  return static_cast<float>(
+      amplitude * (std::isnan(per_amplitude) ? terrain_.error.profile(half_m, amplitude) : per_amplitude));
 }
 
 }  // namespace sightbound

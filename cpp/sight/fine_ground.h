@@ -13,47 +13,68 @@
 
 namespace sightbound {
 
-// A place of a ray and its ground.
+// A place of a ray.
 struct RayPlace {
   double major = 0, minor = 0;  // samples from the observer's base sample
   double s = 0;                 // metres from the eye along the ground
-  Lanes ground;
 };
 
-// The slope of a line of sight: (height - eye) / s - per_2r s, over the curved ground.
-struct RaySlopes {
-  Lanes eye;          // absolute heights
-  double per_2r = 0;  // (1 - refraction) / 2R
+// What turns a height there into the slope of a line of sight: (height - eye) per_s - drop.
+struct RaySlope {
+  float per_s, drop;
 };
+inline RaySlope ray_slope(double s, double per_2r) {
+  return {static_cast<float>(1 / s), static_cast<float>(per_2r * s)};
+}
+
+// Of all realisations, and a little more: roundings included.
+HeightRange slope_range(const HeightRange& ground, const HeightRange& eye, const RaySlope&);
+
+// A height on the way between two others, given theirs.
+struct FinePlace {
+  Departure draw;
+  RaySlope slope;
+};
+
+// How many there are between two places: none, the middle, or the middle and those of both halves, in this
+// order.
+enum class Fineness : std::uint8_t { kNone = 0, kHalves = 1, kQuarters = 3 };
+using FinePlaces = FinePlace[3];
 
 class FineGround {
  public:
   // With the base sample on the terrain's grid.
-  FineGround(const OpenTerrain& terrain, bool transposed, int base_row, int base_col,
-             std::uint32_t first_realisation)
-      : terrain_(terrain),
-        transposed_(transposed),
-        base_row_(base_row),
-        base_col_(base_col),
-        first_(first_realisation) {}
+  FineGround(const OpenTerrain&, bool transposed, int base_row, int base_col);
 
-  // Raises the horizon by what lies between two places, their middle, and if `depth` is more than 1 the
-  // middles of the halves ...
-  void raise(const RayPlace& a, const RayPlace& b, int depth, const RaySlopes&, Lanes& horizon) const;
+  // `per_2r`: (1 - refraction) / 2R along the ray.
+  void between(const RayPlace& a, const RayPlace& b, double per_2r, Fineness, FinePlaces& out) const;
 
-  // The middle of two places, its ground drawn.
-  RayPlace middle(const RayPlace& a, const RayPlace& b) const;
-  // By how much it departs from the mean of the two, metres (standard deviation).
-  float spread_between(const RayPlace& a, const RayPlace& b) const;
+  // Ground taken from two nodes half a cell apart, a share `part` of the way from the first: what it departs
+  // by from the line between them.
+  Departure across(const RayPlace&, double part) const;
+  float most_across(const RayPlace& place, double part) const {
+    return terrain_.largest_draw * spread_across(place, part);
+  }
+
+  // No realisation's slope is higher. `fineness` is not kNone.
+  float highest(const FinePlaces&, Fineness, const HeightRange& a, const HeightRange& b,
+                const HeightRange& eye) const;
 
  private:
+  DrawKey key_of(double row, double col, std::uint64_t kind) const;
+  FinePlace middle(const RayPlace& a, const RayPlace& b, double per_2r) const;
+  // Of ground half-way between two places, over the amplitude there; NaN where it depends on that.
+  double per_amplitude(double half_m) const;
+  float spread_across(const RayPlace&, double part) const;
+  float spread(double row, double col, double half_m, double per_amplitude) const;
+  double row_of(const RayPlace& place) const { return transposed_ ? place.major : place.minor; }
+  double col_of(const RayPlace& place) const { return transposed_ ? place.minor : place.major; }
+
   const OpenTerrain& terrain_;
   const bool transposed_;
   const int base_row_, base_col_;
-  const std::uint32_t first_;
+  const double half_across_;  // metres: half of half a cell
+  const double across_per_amplitude_;
 };
-
-// NaN raises the horizon for good: what lies behind the unknown is not seen.
-void raise_horizon(const RayPlace& at, const RaySlopes&, Lanes& horizon);
 
 }  // namespace sightbound

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Method. The clearance at each place is a sum of independent normal draws (of samples, of nodes, of fine
-// ground): as such sums clearances have means, variances and covariances, and each step of the bound is a
-// probability of two of them. Places stand in the tree below the one before them on the line, those of fine
-// ground below the first of the two that they lie between.
+// Method. The clearance at each place is a sum of independent normal draws (of samples, centres, nodes,
+// crossings, fine ground): as such sums clearances have means, variances and covariances, and each step of
+// the bound is a probability of two of them. Places stand in the tree below the one before them on the line,
+// those of fine ground below the first of the two that they lie between.
 #include "sight/line_bound.h"
 
 #include <algorithm>
@@ -51,13 +51,8 @@ double covariance(const Sum& one, const Sum& other) {
 
 class Clearances {
  public:
-  Clearances(const LineInDoubt& line, const OpenTerrain& terrain, const RealisedColumns& columns)
-      : line_(line),
-        terrain_(terrain),
-        columns_(columns),
-        fine_(terrain, line.over.transposed, line.base_row, line.base_col, 0),
-        eye_(ground(0)),
-        target_(ground(line.over.places.size() - 1)) {
+  explicit Clearances(const LineInDoubt& line)
+      : line_(line), eye_(ground(0)), target_(ground(line.over.places.size() - 1)) {
     eye_.mean -= line.eye_ground;
     target_.mean -= line.target_ground;
   }
@@ -72,46 +67,49 @@ class Clearances {
   }
 
  private:
-  static constexpr std::uint64_t kFine = std::uint64_t{1} << 63;
+  static Sum drawn(double mean, const Departure& own) {
+    const std::uint64_t draw = static_cast<std::uint64_t>(own.key.b) << 32 | own.key.a;
+    return {mean, {{draw, static_cast<double>(own.spread)}}};
+  }
+  Sum source(int n) const {
+    const SampleDraw& source = line_.sources[static_cast<std::size_t>(n)];
+    return drawn(static_cast<double>(source.mean), source.own);
+  }
 
-  Sum ground(std::size_t i) const {
-    Sum sum;
-    const std::size_t crossings = line_.over.places.size();
-    if (i < crossings) {
-      const NodePlace& place = line_.over.places[i];
-      for (std::size_t n = 0; n < static_cast<std::size_t>(place.nodes); ++n)
-        sum.add(static_cast<double>(place.weight[n]), node(place.node[n].major, place.node[n].minor));
-      return sum;
+  // As draw() of a node adds them up.
+  Sum node(int n) const {
+    const LineNode& node = line_.nodes[static_cast<std::size_t>(n)];
+    if (node.is_sample) return source(node.a);
+    const bool is_centre = node.draw.kind == NodeDraw::Kind::kCentre;
+    Sum sum = is_centre ? Sum{} : drawn(0, node.draw.own);
+    for (const int sample : {node.a, node.b}) sum.add(is_centre ? 0.25 : 0.5, source(sample));
+    if (node.draw.kind == NodeDraw::Kind::kBetween) return sum;
+    sum.mean += static_cast<double>(node.draw.rise);
+    if (is_centre) {
+      for (const int sample : {node.c, node.d}) sum.add(0.25, source(sample));
+      sum.add(1, source(node.e));
+    } else {
+      for (const int centre : {node.e, node.f}) sum.add(static_cast<double>(node.draw.share), source(centre));
     }
-    const LineInDoubt::Halves& of = line_.fine[i - crossings];
-    const auto a = static_cast<std::size_t>(of.a), b = static_cast<std::size_t>(of.b);
-    sum.add(0.5, ground(a));
-    sum.add(0.5, ground(b));
-    const double spread = fine_.spread_between(line_.where[a], line_.where[b]);
-    sum.add(spread, {0, {{kFine | i, 1}}});
     return sum;
   }
 
-  Sum node(int major, int minor) const {
-    const std::uint64_t draw =
-        static_cast<std::uint64_t>(major) << 32 | static_cast<std::uint64_t>(static_cast<unsigned>(minor));
-    if (major % 2 == 0 && minor % 2 == 0) {
-      const int row = (line_.over.transposed ? major : minor) / 2,
-                col = (line_.over.transposed ? minor : major) / 2;
-      return {terrain_.mean.at(row, col) - line_.datum,
-              {{draw, static_cast<double>(terrain_.spread.at(row, col))}}};
+  Sum ground(std::size_t i) const {
+    const std::size_t crossings = line_.over.places.size();
+    if (i < crossings) {
+      const NodePlace& place = line_.over.places[i];
+      Sum sum = drawn(0, line_.across[i]);
+      for (std::size_t n = 0; n < static_cast<std::size_t>(place.nodes); ++n)
+        sum.add(static_cast<double>(place.weight[n]), node(place.index[n]));
+      return sum;
     }
-    Sum sum;
-    sum.add(0.5, node(2 * (major / 2), 2 * (minor / 2)));
-    sum.add(0.5, node(2 * ((major + 1) / 2), 2 * ((minor + 1) / 2)));
-    sum.add(1, {0, {{draw, columns_.between(major, minor)}}});
+    const FineHalf& half = line_.fine[i - crossings];
+    Sum sum = drawn(0, half.draw);
+    for (const int end : {half.a, half.b}) sum.add(0.5, ground(static_cast<std::size_t>(end)));
     return sum;
   }
 
   const LineInDoubt& line_;
-  const OpenTerrain& terrain_;
-  const RealisedColumns& columns_;
-  const FineGround fine_;
   Sum eye_, target_;  // by which the ends rise
 };
 
@@ -124,9 +122,9 @@ double ratio(const Sum& clearance, double variance) {
 
 }  // namespace
 
-double blocked_bound(const LineInDoubt& line, const OpenTerrain& terrain, const RealisedColumns& columns) {
+double blocked_bound(const LineInDoubt& line) {
   if (line.places.empty()) return 0;
-  const Clearances clearances(line, terrain, columns);
+  const Clearances clearances(line);
   struct Known {
     Sum clearance;
     double variance, k;

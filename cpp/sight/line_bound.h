@@ -14,7 +14,7 @@
 
 namespace sightbound {
 
-// At most 1. For normal draws; `columns` are of the terrain.
-double blocked_bound(const LineInDoubt&, const OpenTerrain&, const RealisedColumns& columns);
+// At most 1. For normal draws.
+double blocked_bound(const LineInDoubt&);
 
 }  // namespace sightbound

@@ -181,8 +181,12 @@ class Crossings {
 
 }  // namespace
 
+bool is_transposed(const Eye& eye, const Target& target) {
+  return std::abs(target.row - eye.frame->row()) > std::abs(target.col - eye.frame->col());
+}
+
 LineOverNodes::LineOverNodes(const Grid<float>& mean, const Eye& eye, const Target& target)
-    : transposed(std::abs(target.row - eye.frame->row()) > std::abs(target.col - eye.frame->col())) {
+    : transposed(is_transposed(eye, target)) {
   const FramePlace place = eye.frame_to(target.col, target.row).at(target.col, target.row);
   distance = place.distance();
   bulge = place.bulge;

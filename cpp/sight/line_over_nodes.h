@@ -35,6 +35,9 @@ struct NodeLine {
   int major = 0, from = 0, to = -1, first = 0;
 };
 
+// Are rows the lines of nodes that the line crosses one by one?
+bool is_transposed(const Eye&, const Target&);
+
 struct LineOverNodes {
   // On the grid of `mean`, NaN = unknown.
   LineOverNodes(const Grid<float>& mean, const Eye&, const Target&);

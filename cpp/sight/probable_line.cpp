@@ -7,6 +7,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "sight/fresnel.h"
 
@@ -14,21 +16,52 @@ namespace sightbound {
 
 namespace {
 
-// Halves between the stops, half a cell apart, from either end: as many as the probable viewshed draws.
-constexpr int kNearestSteps = 2, kNearSteps = 8, kDepthNearest = 2, kDepthNear = 1;
-// In cells along the line. Draws of fine ground belong to an eighth; nearer places would share them.
-constexpr double kFinest = 0.125;
+// Steps between the stops, half a cell long, from either end: as finely as the probable viewshed draws.
+constexpr int kNearestSteps = 2, kNearSteps = 8;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-SIGHTBOUND_VECTOR
-void add_part(const Lanes& node, float weight, Lanes& sum) {
-  for (int l = 0; l < kLanes; ++l) sum.v[l] += weight * node.v[l];
-}
+struct Realised {
+  Lanes eye, target;  // how far the ends' ground rises above the DEM
+  std::vector<Lanes> sources, nodes, ground;
+};
 
 SIGHTBOUND_VECTOR
-void lower_by(float datum, const Lanes& height, Lanes& out) {
-  for (int l = 0; l < kLanes; ++l) out.v[l] = height.v[l] - datum;
+void draw_ground(const LineInDoubt& line, std::uint32_t first, Realised& drawn) {
+  for (std::size_t i = 0; i < line.sources.size(); ++i) draw(line.sources[i], first, drawn.sources[i]);
+  const auto source = [&](int n) -> const Lanes& { return drawn.sources[at(n)]; };
+  for (std::size_t i = 0; i < line.nodes.size(); ++i) {
+    const LineNode& node = line.nodes[i];
+    if (node.is_sample) {
+      drawn.nodes[i] = source(node.a);
+    } else {
+      draw(node.draw, first,
+           {source(node.a), source(node.b), source(node.c), source(node.d), source(node.e), source(node.f)},
+           drawn.nodes[i]);
+    }
+  }
+  const std::vector<NodePlace>& places = line.over.places;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Lanes between;
+    for (int l = 0; l < kLanes; ++l)
+      between.v[l] = places[i].known ? 0 : std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t n = 0; n < at(places[i].nodes); ++n) {
+      const Lanes& node = drawn.nodes[at(places[i].index[n])];
+      for (int l = 0; l < kLanes; ++l) between.v[l] += places[i].weight[n] * node.v[l];
+    }
+    draw_about(
+        line.across[i], first, [&](int l) { return between.v[l]; }, drawn.ground[i]);
+  }
+  for (std::size_t i = 0; i < line.fine.size(); ++i) {
+    const FineHalf& half = line.fine[i];
+    draw_between(half.draw, first, drawn.ground[at(half.a)], drawn.ground[at(half.b)],
+                 drawn.ground[places.size() + i]);
+  }
+  const Lanes &eye = drawn.ground.front(), &target = drawn.ground[places.size() - 1];
+  for (int l = 0; l < kLanes; ++l) {
+    drawn.eye.v[l] = eye.v[l] - static_cast<float>(line.eye_ground);
+    drawn.target.v[l] = target.v[l] - static_cast<float>(line.target_ground);
+  }
 }
 
 // Bits 0 to 15: the line lies below the ground; 16 to 31: its zone reaches it.
@@ -44,59 +77,20 @@ std::uint32_t below(const DoubtfulPlace& place, const Lanes& ground, const Lanes
   return line | zone << kLanes;
 }
 
-struct Realised {
-  Lanes eye, target;  // how far the ends' ground rises above the DEM
-  std::vector<Lanes> nodes;
-  std::vector<RayPlace> where;
-};
-
-void draw_nodes(const LineInDoubt& line, RealisedColumns& columns, Realised& drawn) {
-  for (const NodeLine& needed : line.over.lines) {
-    if (needed.to < needed.from) continue;
-    const Lanes* nodes = columns.nodes(needed.major, needed.from, needed.to);
-    for (int n = needed.from; n <= needed.to; ++n)
-      lower_by(static_cast<float>(line.datum), nodes[n], drawn.nodes[at(needed.first + n - needed.from)]);
-  }
-}
-
-void draw_ground(const LineInDoubt& line, const FineGround& fine, Realised& drawn) {
-  const std::vector<NodePlace>& places = line.over.places;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const NodePlace& place = places[i];
-    Lanes& ground = drawn.where[i].ground;
-    std::fill_n(ground.v, kLanes, place.known ? 0 : std::numeric_limits<float>::quiet_NaN());
-    for (std::size_t n = 0; n < at(place.nodes); ++n)
-      add_part(drawn.nodes[at(place.index[n])], place.weight[n], ground);
-  }
-  for (std::size_t i = 0; i < line.fine.size(); ++i)
-    drawn.where[places.size() + i] =
-        fine.middle(drawn.where[at(line.fine[i].a)], drawn.where[at(line.fine[i].b)]);
-  lower_by(static_cast<float>(line.eye_ground), drawn.where.front().ground, drawn.eye);
-  lower_by(static_cast<float>(line.target_ground), drawn.where[places.size() - 1].ground, drawn.target);
-}
-
 }  // namespace
 
-LineInDoubt::LineInDoubt(const Scene& scene, const Grid<float>& mean, const Eye& eye, const Target& target,
-                         const LineDoubt& doubt)
-    : over(mean, eye, target),
-      base_row(eye.base_row),
-      base_col(eye.base_col),
+LineInDoubt::LineInDoubt(const Scene& scene, const OpenTerrain& terrain, const RealisedColumns& columns,
+                         const Eye& eye, const Target& target, const LineDoubt& doubt)
+    : over(terrain.mean, eye, target),
       datum(std::floor(eye.height)),
       eye_ground(doubt.eye_ground - datum),
       target_ground(doubt.target_ground - datum) {
+  if (over.places.empty()) return;
+  find_nodes(columns);
+  find_fine({terrain, over.transposed, eye.base_row, eye.base_col});
   std::vector<bool> known;
-  for (const NodePlace& place : over.places) {
-    where.push_back({place.major, place.minor, place.share * over.distance, {}});
-    known.push_back(place.known);
-  }
-  const int steps = static_cast<int>(over.stops.size()) - 1;
-  for (int i = 0; i < steps; ++i) {
-    const int from_end = std::min(i, steps - 1 - i);
-    const int depth = from_end < kNearestSteps ? kDepthNearest : (from_end < kNearSteps ? kDepthNear : 0);
-    halve(over.stops[at(i)], over.stops[at(i + 1)], depth);
-  }
-  for (const Halves& of : fine) known.push_back(known[at(of.a)] && known[at(of.b)]);
+  for (const NodePlace& place : over.places) known.push_back(place.known);
+  for (const FineHalf& half : fine) known.push_back(known[at(half.a)] && known[at(half.b)]);
 
   const double drop = scene.bend * over.bulge, length = over.distance;
   for (std::size_t i = 0; i < where.size(); ++i) {
@@ -115,36 +109,94 @@ LineInDoubt::LineInDoubt(const Scene& scene, const Grid<float>& mean, const Eye&
   }
 }
 
-void LineInDoubt::halve(int a, int b, int depth) {
-  const RayPlace one = where[at(a)], other = where[at(b)];
-  if (depth == 0 || std::abs(other.major - one.major) < 2 * kFinest) return;
-  const int middle = static_cast<int>(where.size());
-  where.push_back(
-      {0.5 * (one.major + other.major), 0.5 * (one.minor + other.minor), 0.5 * (one.s + other.s), {}});
-  fine.push_back({a, b});
-  halve(a, middle, depth - 1);
-  halve(middle, b, depth - 1);
+void LineInDoubt::find_nodes(const RealisedColumns& columns) {
+  std::map<std::pair<int, int>, int> found;  // by half cells
+  const auto source = [&](int major, int minor, const SampleDraw& draw) {
+    const auto [place, is_new] = found.try_emplace({major, minor}, static_cast<int>(sources.size()));
+    if (is_new) sources.push_back(draw);
+    return place->second;
+  };
+  const auto sample = [&](int m, int n) {
+    SampleDraw draw = columns.sample(m, n);
+    draw.mean -= static_cast<float>(datum);
+    return source(2 * m, 2 * n, draw);
+  };
+  const auto centre = [&](int major, int minor) {
+    return source(major, minor, columns.centre(major, minor));
+  };
+  for (const NodeLine& line : over.lines) {
+    for (int minor = line.from; minor <= line.to; ++minor) {
+      const int major = line.major, m = major / 2, n = minor / 2, m1 = (major + 1) / 2, n1 = (minor + 1) / 2;
+      LineNode node;
+      node.a = sample(m, n);
+      node.is_sample = m == m1 && n == n1;
+      if (!node.is_sample) {
+        node.draw = columns.node(major, minor);
+        node.b = sample(m1, n1);
+        if (node.draw.kind == NodeDraw::Kind::kCentre) {
+          node.b = sample(m, n1);
+          node.c = sample(m1, n);
+          node.d = sample(m1, n1);
+          node.e = centre(major, minor);
+        } else if (node.draw.kind == NodeDraw::Kind::kSide) {
+          const int i = m == m1 ? 1 : 0, j = 1 - i;  // to the centres on either side
+          node.e = centre(major - i, minor - j);
+          node.f = centre(major + i, minor + j);
+        }
+      }
+      nodes.push_back(node);
+    }
+  }
 }
 
-LineCounts count_clear(const LineInDoubt& line, const OpenTerrain& terrain, int realisations,
-                       RealisedColumns& columns) {
+void LineInDoubt::find_fine(const FineGround& ground) {
+  const std::size_t last = over.places.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const NodePlace& place = over.places[i];
+    where.push_back({place.major, place.minor, place.share * over.distance});
+    const bool between = i != 0 && i != last && place.nodes == 2;
+    across.push_back(between ? ground.across(where[i], static_cast<double>(place.weight[1]))
+                             : Departure{{}, 0});
+  }
+  const auto halve = [&](int a, int b, const FinePlace& place) {
+    const RayPlace one = where[at(a)], other = where[at(b)];
+    fine.push_back({a, b, place.draw});
+    where.push_back(
+        {0.5 * (one.major + other.major), 0.5 * (one.minor + other.minor), 0.5 * (one.s + other.s)});
+    return static_cast<int>(where.size()) - 1;
+  };
+  const int steps = static_cast<int>(over.stops.size()) - 1;
+  for (int i = 0; i < steps; ++i) {
+    const int from_end = std::min(i, steps - 1 - i), a = over.stops[at(i)], b = over.stops[at(i + 1)];
+    const Fineness fineness = from_end < kNearestSteps ? Fineness::kQuarters
+                              : from_end < kNearSteps  ? Fineness::kHalves
+                                                       : Fineness::kNone;
+    if (fineness == Fineness::kNone) continue;
+    FinePlaces between;
+    ground.between(where[at(a)], where[at(b)], 0, fineness, between);
+    const int middle = halve(a, b, between[0]);
+    if (fineness == Fineness::kHalves) continue;
+    halve(a, middle, between[1]);
+    halve(middle, b, between[2]);
+  }
+}
+
+LineCounts count_clear(const LineInDoubt& line, int realisations) {
   LineCounts counts;
   counts.realisations = realisations;
   counts.blocked.resize(line.places.size());
   if (line.places.empty()) counts.clear = counts.zone_clear = realisations;
   Realised drawn;
-  drawn.nodes.resize(at(line.over.nodes));
-  drawn.where = line.where;
+  drawn.sources.resize(line.sources.size());
+  drawn.nodes.resize(line.nodes.size());
+  drawn.ground.resize(line.places.size());
   for (int first = 0; first < realisations && !line.places.empty(); first += kLanes) {
-    const auto from = static_cast<std::uint32_t>(first);
     const std::uint32_t used = (1u << std::min(kLanes, realisations - first)) - 1;
-    columns.begin(from);
-    draw_nodes(line, columns, drawn);
-    draw_ground(line, {terrain, line.over.transposed, line.base_row, line.base_col, from}, drawn);
+    draw_ground(line, static_cast<std::uint32_t>(first), drawn);
     std::uint32_t any = 0;
     for (std::size_t i = 0; i < line.places.size(); ++i) {
       if (!line.places[i].judged) continue;
-      const std::uint32_t bits = below(line.places[i], drawn.where[i].ground, drawn.eye, drawn.target);
+      const std::uint32_t bits = below(line.places[i], drawn.ground[i], drawn.eye, drawn.target);
       if (bits == 0) continue;
       any |= bits;
       counts.blocked[i] += std::popcount(bits & used);

@@ -33,9 +33,23 @@ struct DoubtfulPlace {
   bool judged = true;                   // not: an end, or unknown ground that sight may cross
 };
 
-// What is compared, before anything is drawn.
+// A node, or a sample, and the numbers of what it is drawn from, in the order of NodeParents.
+struct LineNode {
+  bool is_sample = false;  // the first of its parents
+  NodeDraw draw{};
+  int a = 0, b = 0, c = 0, d = 0, e = 0, f = 0;
+};
+
+// Half-way between two places, given by number.
+struct FineHalf {
+  int a, b;
+  Departure draw;
+};
+
+// What is drawn and compared. Heights are over `datum`.
 struct LineInDoubt {
-  LineInDoubt(const Scene&, const Grid<float>& mean, const Eye&, const Target&, const LineDoubt&);
+  LineInDoubt(const Scene&, const OpenTerrain&, const RealisedColumns&, const Eye&, const Target&,
+              const LineDoubt&);
 
   double distance() const { return over.distance; }
   // From the base sample.
@@ -43,19 +57,19 @@ struct LineInDoubt {
   double row(std::size_t i) const { return over.transposed ? where[i].major : where[i].minor; }
 
   LineOverNodes over;
-  int base_row, base_col;
   double datum;
-  double eye_ground, target_ground;  // of the DEM at the ends, over the datum
-  // First the places of `over`, then those half-way between two others each, near the ends.
-  std::vector<RayPlace> where;  // without ground
+  double eye_ground, target_ground;  // of the DEM at the ends
+  std::vector<SampleDraw> sources;   // samples, and centres of squares
+  std::vector<LineNode> nodes;       // as `over` numbers them
+  std::vector<Departure> across;     // of the places of `over`, from the line between their nodes
+  std::vector<FineHalf> fine;
+  // First the places of `over`, then those of `fine`.
+  std::vector<RayPlace> where;
   std::vector<DoubtfulPlace> places;
-  struct Halves {
-    int a, b;
-  };
-  std::vector<Halves> fine;
 
  private:
-  void halve(int a, int b, int depth);
+  void find_nodes(const RealisedColumns&);
+  void find_fine(const FineGround&);
 };
 
 struct LineCounts {
@@ -65,6 +79,6 @@ struct LineCounts {
 };
 
 // The realisations are those from 0 on.
-LineCounts count_clear(const LineInDoubt&, const OpenTerrain&, int realisations, RealisedColumns&);
+LineCounts count_clear(const LineInDoubt&, int realisations);
 
 }  // namespace sightbound

@@ -1,57 +1,66 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What one observer sees of sixteen realised terrains at once.
+// What one observer sees of the terrains that could lie behind a DEM.
 //
-// Rays leave the observer half a sample apart at the far end, on geodesics; each carries the horizon of every
-// realisation outward, half a cell at a time. A target asks the ray nearest to it, at most a quarter of a
-// sample off. Eye and target stand on each realised ground. Cost: for each sixteen realisations some 40 ns of
-// one processor a sample; memory a bit for each realisation and cell.
+// Each ray carries the horizons of sixteen realisations outward. Only what may decide is drawn
+// (bounded_march.h). Eye and target stand on each realised ground. Cost: some 40 ns of one processor a sample
+// for what all realisations have in common; then it depends on how much of the view is in doubt: on fractal
+// terrain a few nanoseconds a sample for sixteen realisations. Memory: some megabytes a thread.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "earth/observer_frames.h"
-#include "sight/realised_columns.h"
-#include "sight/viewshed.h"
+#include "sight/bounded_march.h"
+#include "sight/ray_fan.h"
+#include "sight/sight_plan.h"
 
 namespace sightbound {
 
-// Bit l of a cell: seen in realisation l of the sixteen. Cells that nobody can be asked about hold none.
-using SeenBits = Grid<std::uint16_t>;
+// Cells of the terrain's grid, by target heights.
+struct CellLayers {
+  Grid<Layers> open, seen;   // neither in all realisations; in all realisations
+  Grid<std::uint32_t> item;  // of the cell's first height: where its answers go
+};
 
-struct ProbableEye {
-  const ObserverFrame* frame = nullptr;  // in coordinates from the base sample
-  int base_col = 0, base_row = 0;        // of the terrain's grid
-  double height = 1.7;                   // metres above the ground there
-  Window reach;  // all that he could be asked about, on the terrain's grid or beyond: rays depend on it
+// Realisations to draw, a multiple of sixteen.
+struct Draws {
+  std::uint32_t first;
+  int sixteens;
 };
 
 class ProbableView {
  public:
-  // `target_height` above the ground, metres; `bend`: Scene::bend.
-  ProbableView(const OpenTerrain&, const ProbableEye&, double target_height, double bend);
+  // `heights` of the targets above the ground, at most kMostLayers; `bend`: Scene::bend.
+  ProbableView(const OpenTerrain&, const ProbableEye&, std::vector<float> heights, double bend,
+               const Refinement&);
 
+  // Blocks have no targets in common: any order, any thread.
   std::size_t blocks() const { return blocks_.size(); }
-  // Sets the bits of a block's targets; blocks have no targets in common. `seen` is on the terrain's grid.
-  void march(std::size_t block, std::uint32_t first_realisation, SeenBits& seen) const;
+  // Adds to each cell of a block what is open, and what is seen in all realisations.
+  void bound(std::size_t block, CellLayers&);
+  // Draws realisations for the layers of the block's cells that are open, and adds those in which they are
+  // seen; only after bound().
+  void look(std::size_t block, const CellLayers&, const Draws&, const SeenBits&);
 
  private:
-  struct Side {
-    bool transposed;
-    int sign;
-  };
   struct Block {
-    Side side;
-    int first, count, rays;  // of the side's rays
+    RayBlock rays;
+    std::vector<int> last_lines;  // what is open ends there
   };
-  class March;
 
-  Lanes eye_heights(std::uint32_t first_realisation) const;
+  HeightRange eye_range() const;
+  SixteenEyes eyes(std::uint32_t first_realisation) const;
+  template <class Visit>
+  void nodes_at_eye(const Visit&) const;
+  Layers all_layers() const { return static_cast<Layers>((1u << heights_.size()) - 1); }
 
   const OpenTerrain& terrain_;
-  ProbableEye eye_;
-  double target_height_, bend_;
+  const ProbableEye eye_;
+  const std::vector<float> heights_;
+  const double bend_;
+  const Refinement refinement_;
+  const RealisedColumns columns_[2];  // columns; rows
   std::vector<Block> blocks_;
 };
 

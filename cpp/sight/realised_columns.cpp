@@ -10,21 +10,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-SIGHTBOUND_VECTOR
-void draw(const DrawKey& key, std::uint32_t first, float mean, float spread, Lanes& out) {
-  for (int l = 0; l < kLanes; ++l)
-    out.v[l] = mean + spread * normal_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
-}
-
-SIGHTBOUND_VECTOR
-void draw_between(const DrawKey& key, std::uint32_t first, const Lanes& a, const Lanes& b, float spread,
-                  Lanes& out) {
-  for (int l = 0; l < kLanes; ++l) {
-    const float middle = 0.5f * (a.v[l] + b.v[l]);
-    out.v[l] = middle + spread * normal_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
-  }
-}
-
 // Half of the way from a sample to its neighbour along the row, the column, the diagonal; metres.
 enum Way { kAlongRow, kAlongColumn, kAlongDiagonal };
 double half_way(const CellSize& cell, Way way) {
@@ -34,12 +19,18 @@ double half_way(const CellSize& cell, Way way) {
 
 }  // namespace
 
-RealisedColumns::RealisedColumns(const OpenTerrain& terrain, bool transposed, std::uint32_t first_realisation)
+RealisedColumns::RealisedColumns(const OpenTerrain& terrain, bool transposed)
     : terrain_(terrain),
       transposed_(transposed),
-      first_(first_realisation),
       samples_major_(transposed ? terrain.mean.rows() : terrain.mean.cols()),
       samples_minor_(transposed ? terrain.mean.cols() : terrain.mean.rows()) {
+  if (const auto& surface = terrain.error.surface; surface && terrain.rises) {
+    const double unit = terrain.error.plain_per_amplitude() * surface->points;
+    row_edge_ = unit * surface->row_edge.spread;
+    col_edge_ = unit * surface->col_edge.spread;
+    centre_ = unit * surface->centre.spread;
+    return;
+  }
   const GrowthProfile& profile = terrain.error.profile;
   const bool by_amplitude = profile.shape == GeologicShape::kGaussian && profile.range_m == 0;
   if (by_amplitude) return;
@@ -49,61 +40,124 @@ RealisedColumns::RealisedColumns(const OpenTerrain& terrain, bool transposed, st
   }
 }
 
-void RealisedColumns::begin(std::uint32_t first_realisation) {
-  first_ = first_realisation;
-  for (Line& line : lines_) line.major = -1;
+DrawKey RealisedColumns::key(const Place& at) const {
+  return draw_key(terrain_.seed, 2 * terrain_.row + at.row, 2 * terrain_.col + at.col);
 }
 
-double RealisedColumns::between(int major, int minor) const {
-  const int row = transposed_ ? major : minor, col = transposed_ ? minor : major;
-  const int r = row / 2, c = col / 2, r1 = (row + 1) / 2, c1 = (col + 1) / 2;
-  const Way way = row % 2 == 0 ? kAlongRow : (col % 2 == 0 ? kAlongColumn : kAlongDiagonal);
+// The spread at a node that is no sample: of the error between the two that it lies between.
+float RealisedColumns::spread_of_model(const Place& node) const {
+  const int r = node.row / 2, c = node.col / 2, r1 = (node.row + 1) / 2, c1 = (node.col + 1) / 2;
+  const Way way = node.row % 2 == 0 ? kAlongRow : (node.col % 2 == 0 ? kAlongColumn : kAlongDiagonal);
   const double amplitude =
       0.5 * (static_cast<double>(terrain_.error.amplitude.at(r, c)) + terrain_.error.amplitude.at(r1, c1));
   if (amplitude == 0) return 0;
-  if (!growth_.empty()) return amplitude * growth_[3 * at(r) + at(way)];
-  return amplitude * terrain_.error.profile(half_way(terrain_.error.cell_sizes[at(r)], way), amplitude);
+  const double growth =
+      growth_.empty() ? terrain_.error.profile(half_way(terrain_.error.cell_sizes[at(r)], way), amplitude)
+                      : growth_[3 * at(r) + at(way)];
+  return static_cast<float>(amplitude * growth);
 }
 
-const Lanes* RealisedColumns::samples(Line& line, int major, int from, int to) {
-  if (line.major == major && line.from <= from && to <= line.to) return line.heights.data() - line.from;
-  line.major = major;
-  line.from = from;
-  line.to = to;
-  line.heights.resize(std::max(line.heights.size(), at(to - from + 1)));
-  for (int n = from; n <= to; ++n) {
-    const int row = transposed_ ? major : n, col = transposed_ ? n : major;
-    const float spread = terrain_.spread.at(row, col), mean = terrain_.mean.at(row, col);
-    Lanes& out = line.heights[at(n - from)];
-    if (spread == 0) {
-      std::fill_n(out.v, kLanes, mean);
-    } else {
-      draw(draw_key(terrain_.seed, 2 * (terrain_.row + row), 2 * (terrain_.col + col)), first_, mean, spread,
-           out);
-    }
-  }
-  return line.heights.data() - line.from;
+float RealisedColumns::spread_of_surface(const Place& node) const {
+  const SampleField& amplitude = terrain_.error.amplitude;
+  const int rows = terrain_.mean.rows(), cols = terrain_.mean.cols();
+  const int r = std::max(node.row, 0) / 2, c = std::max(node.col, 0) / 2;
+  const int r1 = std::min((node.row + 1) / 2, rows - 1), c1 = std::min((node.col + 1) / 2, cols - 1);
+  if (node.row % 2 == 0)
+    return static_cast<float>(row_edge_ * 0.5) * (amplitude.at(r, c) + amplitude.at(r, c1));
+  if (node.col % 2 == 0)
+    return static_cast<float>(col_edge_ * 0.5) * (amplitude.at(r, c) + amplitude.at(r1, c));
+  return static_cast<float>(centre_ * 0.25) *
+         ((amplitude.at(r, c) + amplitude.at(r, c1)) + (amplitude.at(r1, c) + amplitude.at(r1, c1)));
 }
 
-const Lanes* RealisedColumns::nodes(int major, int from, int to) {
-  nodes_.resize(std::max(nodes_.size(), at(to - from + 1)));
-  const int low = from / 2, high = (to + 1) / 2;
+float RealisedColumns::rise(const Place& node) const {
+  const MiddleRises& rises = *terrain_.rises;
+  const int r = node.row / 2, c = node.col / 2;
+  if (node.row % 2 == 0) return rises.row_edge.at(r, c);
+  return node.col % 2 == 0 ? rises.col_edge.at(r, c) : rises.centre.at(r, c);
+}
+
+SampleDraw RealisedColumns::sample(int major, int minor) const {
+  const Place at = place(2 * major, 2 * minor);
+  return {{key(at), terrain_.spread.at(at.row / 2, at.col / 2)}, terrain_.mean.at(at.row / 2, at.col / 2)};
+}
+
+SampleDraw RealisedColumns::centre(int major, int minor) const {
+  const Place at = place(major, minor);
+  return {{key(at), spread_of_surface(at)}, 0};
+}
+
+NodeDraw RealisedColumns::node(int major, int minor) const {
+  const Place at = place(major, minor);
+  if (!is_learnt()) return {NodeDraw::Kind::kBetween, {key(at), spread_of_model(at)}, 0, 0};
+  if (major % 2 != 0 && minor % 2 != 0) return {NodeDraw::Kind::kCentre, {key(at), 0}, rise(at), 0};
+  const auto share = static_cast<float>(terrain_.error.surface->from_centres / 2);
+  return {NodeDraw::Kind::kSide, {key(at), spread_of_surface(at)}, rise(at), share};
+}
+
+Lanes RealisedColumns::heights(int major, int minor, std::uint32_t first) const {
+  const int m = major / 2, n = minor / 2, m1 = (major + 1) / 2, n1 = (minor + 1) / 2;
+  const auto drawn = [&](const SampleDraw& sample) {
+    Lanes lanes;
+    draw(sample, first, lanes);
+    return lanes;
+  };
+  const Lanes a = drawn(sample(m, n));
+  if (m == m1 && n == n1) return a;
+  const NodeDraw law = node(major, minor);
+  const bool is_centre = law.kind == NodeDraw::Kind::kCentre;
+  const Lanes b = drawn(is_centre ? sample(m, n1) : sample(m1, n1)), c = drawn(sample(m1, n)),
+              d = drawn(sample(m1, n1));
+  const int i = is_centre || m != m1 ? 0 : 1, j = is_centre ? 0 : 1 - i;
+  const Lanes e = drawn(centre(major - i, minor - j)), f = drawn(centre(major + i, minor + j));
+  Lanes out;
+  draw(law, first, {a, b, c, d, e, f}, out);
+  return out;
+}
+
+// At a sample.
+HeightRange RealisedColumns::range(int major, int minor) const {
+  const Place at = place(major, minor);
+  const float mean = terrain_.mean.at(at.row, at.col),
+              most = terrain_.largest_draw * terrain_.spread.at(at.row, at.col);
+  return {mean - most, mean + most};
+}
+
+// What all draws of a node that is no sample come to at most, in standard deviations' sizes.
+float RealisedColumns::most(int major, int minor) const {
+  const Place at = place(major, minor);
+  if (!is_learnt()) return spread_of_model(at);
+  if (major % 2 != 0 && minor % 2 != 0) return spread_of_surface(at);
+  const int i = major % 2 == 0 ? 1 : 0, j = 1 - i;  // to the centres on either side
+  const auto share = static_cast<float>(std::abs(terrain_.error.surface->from_centres) / 2);
+  return spread_of_surface(at) + share * (spread_of_surface(place(major - i, minor - j)) +
+                                          spread_of_surface(place(major + i, minor + j)));
+}
+
+void RealisedColumns::ranges(int major, int from, int to, std::vector<HeightRange>& out) const {
+  out.resize(at(to - from + 1));
   const int m = major / 2, next = (major + 1) / 2;
-  // The line of the lower number is kept in its own place, so that neighbouring majors find it again.
-  const Lanes* here = samples(lines_[m % 2], m, low, high);
-  const Lanes* there = next == m ? here : samples(lines_[next % 2], next, low, high);
   for (int n = from; n <= to; ++n) {
     const int k = n / 2, k1 = (n + 1) / 2;
-    Lanes& out = nodes_[at(n - from)];
-    if (k == k1 && m == next) {
-      out = here[k];
+    const HeightRange a = range(m, k);
+    HeightRange& here = out[at(n - from)];
+    if (m == next && k == k1) {
+      here = a;
       continue;
     }
-    const int row = transposed_ ? major : n, col = transposed_ ? n : major;
-    draw_between(draw_key(terrain_.seed, 2 * terrain_.row + row, 2 * terrain_.col + col), first_, here[k],
-                 there[k1], static_cast<float>(between(major, n)), out);
+    const HeightRange b = range(next, k1);
+    const float room = terrain_.largest_draw * most(major, n);
+    here = {0.5f * (a.low + b.low), 0.5f * (a.high + b.high)};
+    if (is_learnt()) {
+      if (m != next && k != k1) {
+        const HeightRange c = range(m, k1), d = range(next, k);
+        here = {0.5f * here.low + 0.25f * (c.low + d.low), 0.5f * here.high + 0.25f * (c.high + d.high)};
+      }
+      const float up = rise(place(major, n));
+      here = {here.low + up, here.high + up};
+    }
+    here = {here.low - room, here.high + room};
   }
-  return nodes_.data() - from;
 }
 
 }  // namespace sightbound

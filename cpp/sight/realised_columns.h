@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Terrains that could lie behind a DEM, column by column: each realisation a surface of its own, sixteen side
-// by side.
+// Terrains that could lie behind a DEM: what each node of their surfaces is drawn from, and the heights that
+// no draw leaves.
 //
-// Known heights are drawn from what the measurements leave open (posterior.h). Half-way between samples,
-// along rows, columns and NW-SE diagonals, terrain rises or falls by the between-sample error of the error
-// model: a column line has nodes at every half cell, and so there are twice as many column lines. Between
-// nodes terrain is linear.
+// Known heights are drawn from what the measurements leave open (posterior.h). Half-way between samples
+// terrain rises or falls by the between-sample error of the error model: a column line has nodes at every
+// half cell, and so there are twice as many column lines. Between nodes terrain is linear.
+//
+// Where that error was learnt from the DEM, terrain is drawn as a self-affine surface (fractal_surface.h):
+// first the centres of squares about their four samples, then the middles of cell sides about their two
+// samples and with their share of the two centres beside (Fournier, Fussell and Carpenter 1982). Otherwise a
+// node departs from the two samples beside it, at centres those of the NW-SE diagonal, by the error that the
+// model gives for that distance, each by itself.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "error_model/error_field.h"
+#include "error_model/posterior.h"
 #include "sight/draws.h"
 #include "terrain/grid.h"
 
@@ -24,40 +30,117 @@ struct OpenTerrain {
   const ErrorField& error;        // between them
   std::int64_t row = 0, col = 0;  // of the grid's first sample in the whole raster
   std::uint64_t seed = 0;
+  const MiddleRises* rises = nullptr;  // with error.surface: of that
+  float largest_draw = kLargestDraw;   // in standard deviations; a larger one only costs time
+};
+
+// Of all realisations, metres; NaN where terrain is not known.
+struct HeightRange {
+  float low, high;
+};
+
+// A number about 0.
+struct Departure {
+  DrawKey key;
+  float spread;
+};
+
+// A number about another: the height at a sample.
+struct SampleDraw {
+  Departure own;
+  float mean;
+};
+
+// The height at a node that is no sample, given the samples a, b (c, d) around it and what was drawn of the
+// centres e, f of squares.
+struct NodeDraw {
+  enum class Kind : std::uint8_t {
+    kBetween,  // (a + b) / 2 + own
+    kSide,     // (a + b) / 2 + rise + share (e + f) + own
+    kCentre    // (a + b + c + d) / 4 + rise + e
+  } kind;
+  Departure own;
+  float rise, share;
 };
 
 // Lines of nodes are numbered by half cells: 2 n is at sample n. With `transposed` they are rows.
 class RealisedColumns {
  public:
-  RealisedColumns(const OpenTerrain&, bool transposed, std::uint32_t first_realisation);
+  RealisedColumns(const OpenTerrain&, bool transposed);
 
-  // Of the line `major`, nodes `from` to `to` (both included); valid until the next call. NaN where terrain
-  // is not known.
-  const Lanes* nodes(int major, int from, int to);
-  // From now on the sixteen realisations from this one.
-  void begin(std::uint32_t first_realisation);
-
-  // Of a node that is no sample: the spread about the mean of the two that it lies between, metres.
-  double between(int major, int minor) const;
+  SampleDraw sample(int major, int minor) const;  // numbered by samples
+  // What is drawn of the centre of a square; beyond the rim too, so that sides there have two beside them.
+  SampleDraw centre(int major, int minor) const;
+  NodeDraw node(int major, int minor) const;
+  // Of one node or sample, in sixteen realisations.
+  Lanes heights(int major, int minor, std::uint32_t first_realisation) const;
+  // Of the line `major`, nodes `from` to `to` (both included).
+  void ranges(int major, int from, int to, std::vector<HeightRange>&) const;
 
   int majors() const { return 2 * samples_major_ - 1; }
   int minors() const { return 2 * samples_minor_ - 1; }
 
  private:
-  struct Line {
-    int major = -1, from = 0, to = -1;
-    std::vector<Lanes> heights;
+  // A sample or node: its place on the terrain's grid, in half cells.
+  struct Place {
+    int row, col;
   };
-  const Lanes* samples(Line&, int major, int from, int to);
+  Place place(int major, int minor) const { return transposed_ ? Place{major, minor} : Place{minor, major}; }
+  DrawKey key(const Place& at) const;
+  bool is_learnt() const { return centre_ != 0; }
+  float spread_of_model(const Place&) const;
+  float spread_of_surface(const Place&) const;
+  float rise(const Place&) const;
+  HeightRange range(int major, int minor) const;
+  float most(int major, int minor) const;
 
   const OpenTerrain& terrain_;
   const bool transposed_;
-  std::uint32_t first_;
   int samples_major_, samples_minor_;
-  Line lines_[2];
-  std::vector<Lanes> nodes_;
   std::vector<double> growth_;  // of each row: along it, down from it, along the diagonal; empty where it
                                 // depends on the amplitude
+  double row_edge_ = 0, col_edge_ = 0, centre_ = 0;  // spreads of a learnt surface over amplitude
 };
+
+// `middle`(l) + what is drawn for each lane.
+SIGHTBOUND_INLINE void draw_about(const Departure& own, std::uint32_t first, const auto& middle, Lanes& out) {
+  if (own.spread == 0) {
+    for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l);
+    return;
+  }
+  for (int l = 0; l < kLanes; ++l) {
+    const std::uint32_t bits = draw_bits(own.key, first + static_cast<std::uint32_t>(l));
+    out.v[l] = middle(l) + own.spread * normal_from(bits);
+  }
+}
+
+SIGHTBOUND_INLINE void draw(const SampleDraw& sample, std::uint32_t first, Lanes& out) {
+  draw_about(
+      sample.own, first, [&](int) { return sample.mean; }, out);
+}
+
+SIGHTBOUND_INLINE void draw_between(const Departure& own, std::uint32_t first, const Lanes& a, const Lanes& b,
+                                    Lanes& out) {
+  draw_about(
+      own, first, [&](int l) { return 0.5f * (a.v[l] + b.v[l]); }, out);
+}
+
+// What a node is drawn from, in the order of NodeDraw; those that its kind does not need are not looked at.
+struct NodeParents {
+  const Lanes &a, &b, &c, &d, &e, &f;
+};
+SIGHTBOUND_INLINE void draw(const NodeDraw& node, std::uint32_t first, const NodeParents& of, Lanes& out) {
+  if (node.kind == NodeDraw::Kind::kBetween) {
+    draw_between(node.own, first, of.a, of.b, out);
+  } else if (node.kind == NodeDraw::Kind::kSide) {
+    const auto middle = [&](int l) {
+      return 0.5f * (of.a.v[l] + of.b.v[l]) + node.rise + node.share * (of.e.v[l] + of.f.v[l]);
+    };
+    draw_about(node.own, first, middle, out);
+  } else {
+    for (int l = 0; l < kLanes; ++l)
+      out.v[l] = 0.25f * ((of.a.v[l] + of.b.v[l]) + (of.c.v[l] + of.d.v[l])) + node.rise + of.e.v[l];
+  }
+}
 
 }  // namespace sightbound

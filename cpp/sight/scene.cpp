@@ -41,8 +41,8 @@ Scene::Scene(const Grid<float>& heights_in, const ErrorField& error_in, const Sc
              const Workers& workers, Progress& progress)
     : heights(heights_in),
       error(error_in),
-      quantile(two_sided_quantile(options.confidence)),
-      largest_ratio(std::max(kCertainRatio, quantile)),
+      quantile(two_sided_quantile(options.confidence, error_in.tails)),
+      largest_ratio(std::max(certain_ratio(error_in.tails), quantile)),
       bend(options.curvature ? 1 - options.refraction : 0),
       ends_move(options.ends_move),
       see_across_nodata(options.see_across_nodata),

@@ -11,9 +11,6 @@
 
 namespace sightbound {
 
-// Beyond this |k*| a probability is 0 or 1: Phi(3.29) = 0.9995.
-inline constexpr double kCertainRatio = 3.29;
-
 struct SceneOptions {
   double confidence = 0.95;
   double refraction = 0.13;
@@ -30,7 +27,7 @@ struct Scene {
   const Grid<float>& heights;
   const ErrorField& error;
   double quantile;       // z(c)
-  double largest_ratio;  // K = max(3.29, z(c)): k* is settled within +-K
+  double largest_ratio;  // K, certain_ratio() or z(c) when larger: k* is settled within +-K
   double bend;           // share of D^2 / 2R by which a line bulges against the ground: 1 - refraction, or 0
   bool ends_move, see_across_nodata;
   double end_zone_m;   // metres

@@ -40,12 +40,6 @@ constexpr int kLeastBlock = 4;          // columns; smaller blocks are settled t
 constexpr double kRounding = 1e-4;      // of a ratio told from p
 constexpr std::size_t kFewPlaces = 16;  // smaller boxes of views are looked at voxel by voxel
 
-// The ratio whose normal_cdf() is p.
-double normal_quantile(double p) {
-  if (p == 0.5) return 0;
-  return p > 0.5 ? two_sided_quantile(2 * p - 1) : -two_sided_quantile(1 - 2 * p);
-}
-
 }  // namespace
 
 template <class Visit>
@@ -171,7 +165,8 @@ bool TargetTile::is_beaten(const Node& node, TargetAnswer& answer, const Box3& t
                            const Xyz& centre) const {
   if (answer == sure(kVisible)) return true;
   const Grain grain = node.last - node.first <= kFewPlaces ? Grain::kVoxels : Grain::kBlocks;
-  double known = answer.verdict == kNoVerdict ? -ask_.most : normal_quantile(static_cast<double>(answer.p));
+  double known = answer.verdict == kNoVerdict ? -ask_.most
+                                              : one_sided_quantile(static_cast<double>(answer.p), ask_.tails);
   if (known != 0) known -= kRounding;
   if (answer.verdict == kNoVerdict || answer.verdict == kHidden) {
     if (farthest_in_plan(node.box, target) > ask_.options.max_distance_m) return false;
@@ -213,8 +208,9 @@ TargetAnswer TargetTile::judge(std::size_t place, int i, int j, int k, EndZone& 
   const auto [ratio, closest] = ask_.sight.least(ask_.zones[place], target, closest_);
   if (closest < VolumeRays::kNever) closest_ = closest;
   const auto within = [most = static_cast<float>(ask_.most)](float b) { return std::clamp(b, -most, most); };
-  TargetAnswer answer{static_cast<float>(proven_probability({within(ratio.low), within(ratio.high)})),
-                      verdict_of(ratio, ask_.quantile)};
+  TargetAnswer answer{
+      static_cast<float>(proven_probability({within(ratio.low), within(ratio.high)}, ask_.tails)),
+      verdict_of(ratio, ask_.quantile)};
   if (answer.verdict == kUncertain) return answer;
   const TargetAnswer& known = answers_[slot(i, j)][static_cast<std::size_t>(k - targets_.column(i, j).first)];
   const bool matters = join(known, answer).verdict != join(known, {answer.p, kUncertain}).verdict;
@@ -271,12 +267,12 @@ TargetAnswer TargetTile::join(const TargetAnswer& a, const TargetAnswer& b) cons
 TargetAnswer TargetTile::sure(std::uint8_t verdict) const {
   if (verdict == kHidden) return hidden_by(ask_.most);
   const auto most = static_cast<float>(ask_.most);
-  return {static_cast<float>(proven_probability({most, most})), kVisible};
+  return {static_cast<float>(proven_probability({most, most}, ask_.tails)), kVisible};
 }
 
 TargetAnswer TargetTile::hidden_by(double ratio) const {
   const auto most = static_cast<float>(-ratio);
-  return {static_cast<float>(proven_probability({most, most})), kHidden};
+  return {static_cast<float>(proven_probability({most, most}, ask_.tails)), kHidden};
 }
 
 bool TargetTile::is_settled(int i, int j) const {

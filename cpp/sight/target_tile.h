@@ -25,6 +25,7 @@ struct TileQuestion {
   const VolumeViewshedOptions& options;
   double quantile;  // z(c)
   double most;      // K: beyond, nothing more is told
+  Tails tails;
   Xyz target_room;  // half sizes of the box that a target's verdict holds for
   bool monotone;    // who sees a target sees all above it (height fields)
   bool solid;       // no sheet

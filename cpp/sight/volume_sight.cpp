@@ -181,9 +181,9 @@ bool VolumeSight::blocked(const EndRoom& observer, const EndRoom& target, double
   return observer.blocked(lines, true, ratio) || target.blocked(lines, false, ratio);
 }
 
-double proven_probability(const RatioInterval& k) {
-  if (k.low > 0) return normal_cdf(static_cast<double>(k.low));
-  return k.high < 0 ? normal_cdf(static_cast<double>(k.high)) : 0.5;
+double proven_probability(const RatioInterval& k, Tails tails) {
+  if (k.low > 0) return cdf(static_cast<double>(k.low), tails);
+  return k.high < 0 ? cdf(static_cast<double>(k.high), tails) : 0.5;
 }
 
 }  // namespace sightbound

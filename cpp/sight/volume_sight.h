@@ -89,7 +89,7 @@ inline std::uint8_t verdict_of(const RatioInterval& k, double quantile) {
   if (static_cast<double>(k.low) >= quantile) return kVisible;
   return static_cast<double>(k.high) <= -quantile ? kHidden : kUncertain;
 }
-// The confidence of visibility that is proven: Phi of the bound nearer to 0, 1/2 where the sign is open.
-double proven_probability(const RatioInterval& k);
+// The confidence of visibility that is proven: F of the bound nearer to 0, 1/2 where the sign is open.
+double proven_probability(const RatioInterval& k, Tails tails);
 
 }  // namespace sightbound

@@ -41,6 +41,7 @@ TileQuestion question(const VolumeSight& sight, const ViewTree& views, const Vol
                    options,
                    volume.quantile(options.confidence),
                    volume.largest_ratio(),
+                   volume.tails(),
                    room_of(options.holds_for, volume, target),
                    volume.surface().metric() == Metric::kVertical,
                    volume.surface().sides() == Sides::kSolid,

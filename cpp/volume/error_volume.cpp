@@ -63,6 +63,7 @@ ErrorVolume ErrorVolume::build(std::shared_ptr<const Surface> surface, const Vol
   volume.voxel_m_ = voxels.voxel_m;
   volume.voxel_height_m_ = voxels.voxel_height_m;
   volume.largest_ratio_ = largest_ratio_of(options);
+  volume.tails_ = options.tails;
   volume.error_model_ = options.error_model;
   require_memory(*surface, options);
 
@@ -80,7 +81,7 @@ ErrorVolume ErrorVolume::build(std::shared_ptr<const Surface> surface, const Vol
   progress.finish();
 
   VolumeReport& report = volume.report_;
-  const HeldFaces held = count_held(*surface, voxels, options.confidence);
+  const HeldFaces held = count_held(*surface, voxels, options.confidence, options.tails);
   report.faces = held.faces;
   report.faces_not_held = held.not_held;
   report.finest_needed_m = held.finest_needed_m;
@@ -106,11 +107,10 @@ ErrorVolume ErrorVolume::build(std::shared_ptr<const Surface> surface, const Vol
 }
 
 double ErrorVolume::quantile(double confidence) const {
-  const double quantile = two_sided_quantile(confidence);
+  const double quantile = two_sided_quantile(confidence, tails_);
   if (quantile <= largest_ratio_) return quantile;
   throw InvalidInput("confidence is " + number_text(confidence) + ", more than this volume was built for (" +
-                     number_text(2 * normal_cdf(largest_ratio_) - 1, 4) +
-                     "); build it with a larger largest_confidence.");
+                     number_text(largest_confidence(), 4) + "); build it with a larger largest_confidence.");
 }
 
 Voxel ErrorVolume::voxel_of(const Xyz& local) const {
@@ -126,7 +126,7 @@ bool ErrorVolume::is_ambiguous(const Voxel& voxel) const { return trees_->ambigu
 CoverMasks build_covers(const std::shared_ptr<const Surface>& shared, double confidence,
                         const VolumeOptions& options, Progress& progress) {
   const Surface& surface = *shared;
-  const double quantile = two_sided_quantile(confidence);
+  const double quantile = two_sided_quantile(confidence, options.tails);
   const VoxelChoice voxels = choose_voxels(surface, options);
   if (surface.metric() == Metric::kNormal) {
     VolumeOptions exact = options;

@@ -36,7 +36,8 @@ struct VolumeOptions {
   double alpha = 0;           // eps / voxel when voxel_m is chosen; 0 = from the slopes
   double confidence = 0.95;   // the one that voxels are chosen for
   double largest_confidence =
-      0;  // the band reaches as far as its quantile; 0 = K is 3.29, or z(confidence) when larger
+      0;  // the band reaches as far as its quantile; 0 = K is certain_ratio(), or z(confidence) when larger
+  Tails tails = Tails::kNormal;  // of the surface's error in units of sigma: whose quantiles count
   std::size_t memory_bytes = 0;  // budget; 0 = three quarters of the memory usable
   int threads = 0;               // 0 = all
   std::string error_model;       // ErrorModel::describe() of what the surface's error came from; only kept
@@ -76,6 +77,8 @@ class ErrorVolume {
   double voxel_m() const { return voxel_m_; }
   double voxel_height_m() const { return voxel_height_m_; }
   double largest_ratio() const { return largest_ratio_; }  // K
+  Tails tails() const { return tails_; }
+  double largest_confidence() const { return 2 * cdf(largest_ratio_, tails_) - 1; }  // that K stands for
   // z(c). Throws InvalidInput for a confidence outside (0, 1) or beyond the band.
   double quantile(double confidence) const;
   float beyond_ratio() const { return beyond(largest_ratio_); }  // K'
@@ -101,6 +104,7 @@ class ErrorVolume {
   ErrorVolume() = default;
 
   double voxel_m_ = 0, voxel_height_m_ = 0, largest_ratio_ = 0;
+  Tails tails_ = Tails::kNormal;
   std::string error_model_;
   std::shared_ptr<const Surface> surface_;
   std::shared_ptr<const Trees> trees_;

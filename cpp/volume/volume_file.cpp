@@ -21,6 +21,7 @@ namespace {
 constexpr const char* kWhat = "an error volume";
 constexpr const char* kFormat = "error_volume";
 constexpr std::int32_t kFormatVersion = 1;
+constexpr double kMostRatio = 1e4;  // Student's quantile of the confidence next to 1 is 1.6e3
 
 using FloatLeaf = openvdb::FloatTree::LeafNodeType;
 
@@ -195,7 +196,8 @@ void ErrorVolume::save(const std::string& path, Progress& progress) const {
   put("voxel_m", voxel_m_);
   put("voxel_height_m", voxel_height_m_);
   put("largest_ratio", largest_ratio_);
-  put("largest_confidence", 2 * normal_cdf(largest_ratio_) - 1);
+  put("largest_confidence", largest_confidence());
+  if (tails_ != Tails::kNormal) put("tails", name_of(tails_));  // files of normal tails are as they were
   put("surface_bytes", static_cast<std::int64_t>(bytes.bytes().size()));
   write_vdb(path, grids, metadata);
   progress.check();
@@ -217,9 +219,10 @@ ErrorVolume ErrorVolume::open(const std::string& path, Progress& progress) {
   volume.voxel_height_m_ = get("voxel_height_m", double{});
   volume.largest_ratio_ = get("largest_ratio", double{});
   volume.error_model_ = get("error_model", std::string());
+  if (content.metadata["tails"]) volume.tails_ = tails_from(get("tails", std::string()));
   const auto sensible = [](double value, double most) { return value > 0 && value <= most; };
   if (!sensible(volume.voxel_m_, 1e5) || !sensible(volume.voxel_height_m_, 1e5) ||
-      !sensible(volume.largest_ratio_, 100)) {
+      !sensible(volume.largest_ratio_, kMostRatio)) {
     refuse_vdb(path, kWhat, "its voxel sizes or confidences make no sense");
   }
   progress.check();

@@ -14,7 +14,6 @@ namespace sightbound {
 namespace {
 
 constexpr double kSqrt2 = 1.4142135623730951;
-constexpr double kDefaultRatio = 3.29;                  // sight judges probabilities as far as this
 constexpr double kLeastVoxel = 1e-3, kMostVoxel = 1e5;  // metres
 constexpr std::size_t kFacesLookedAt = 200000;          // for quantiles and sums
 constexpr double kLeafBytes = 2048 + 96, kNodeBytes = 34 * 1024;
@@ -70,20 +69,20 @@ void check_length(double value, const char* name) {
                      "; give metres from 0.001 to 100000, or 0 to choose it.");
 }
 
-double quantile_of(double confidence, const char* name) {
+double quantile_of(double confidence, Tails tails, const char* name) {
   if (!(confidence > 0 && confidence < 1)) {
     throw InvalidInput(std::string(name) + " is " + std::to_string(confidence) +
                        "; it must lie between 0 and 1, e.g. 0.95.");
   }
-  return two_sided_quantile(confidence);
+  return two_sided_quantile(confidence, tails);
 }
 
 }  // namespace
 
 double largest_ratio_of(const VolumeOptions& options) {
-  const double wanted = quantile_of(options.confidence, "confidence");
-  if (options.largest_confidence == 0) return std::max(kDefaultRatio, wanted);
-  const double largest = quantile_of(options.largest_confidence, "largest_confidence");
+  const double wanted = quantile_of(options.confidence, options.tails, "confidence");
+  if (options.largest_confidence == 0) return std::max(certain_ratio(options.tails), wanted);
+  const double largest = quantile_of(options.largest_confidence, options.tails, "largest_confidence");
   if (largest < wanted) {
     throw InvalidInput("largest_confidence is " + std::to_string(options.largest_confidence) +
                        ", below confidence " + std::to_string(options.confidence) +
@@ -99,7 +98,7 @@ VoxelChoice choose_voxels(const Surface& surface, const VolumeOptions& options) 
     throw InvalidInput("alpha is " + std::to_string(options.alpha) +
                        "; give 1 to 1000, or 0 to take it from the slopes.");
   }
-  const double quantile = quantile_of(options.confidence, "confidence");
+  const double quantile = quantile_of(options.confidence, options.tails, "confidence");
   VoxelChoice choice{options.voxel_m, options.voxel_height_m};
   if (choice.voxel_m == 0) {
     if (options.alpha > 0) {
@@ -135,8 +134,8 @@ VoxelChoice choose_voxels(const Surface& surface, const VolumeOptions& options) 
   return choice;
 }
 
-HeldFaces count_held(const Surface& surface, const VoxelChoice& voxels, double confidence) {
-  const double quantile = quantile_of(confidence, "confidence"),
+HeldFaces count_held(const Surface& surface, const VoxelChoice& voxels, double confidence, Tails tails) {
+  const double quantile = quantile_of(confidence, tails, "confidence"),
                flatness = voxels.voxel_height_m / voxels.voxel_m;
   HeldFaces held;
   held.finest_needed_m = std::numeric_limits<double>::infinity();

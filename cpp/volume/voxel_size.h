@@ -30,7 +30,7 @@ struct HeldFaces {
   std::size_t faces = 0, not_held = 0;
   double finest_needed_m = 0;  // voxel side (with the same ratio of height to side) that holds all
 };
-HeldFaces count_held(const Surface& surface, const VoxelChoice& voxels, double confidence);
+HeldFaces count_held(const Surface& surface, const VoxelChoice& voxels, double confidence, Tails tails);
 
 // K of the options. Throws InvalidInput.
 double largest_ratio_of(const VolumeOptions& options);

@@ -56,7 +56,11 @@ class Scene:
         e = self.errors
         delta = e.delta
         return sb.ErrorModel(vertical_rmse=e.vertical, horizontal_rmse=e.horizontal, geologic_variation=delta, geologic_range=e.range,
-                             geologic_model=e.model, **({} if e.exponent is None else {"growth_exponent": e.exponent}))
+                             geologic_model=e.model, tails=e.tails, **({} if e.exponent is None else {"growth_exponent": e.exponent}))
+
+    @property
+    def z_two_sided(self):
+        return z_two_sided(self.confidence, self.errors.tails)
 
     def oracle(self):
         return Oracle(np.asarray(self.z, np.float32), self.gt, self.crs, self.errors, ground=self.ground)
@@ -93,11 +97,11 @@ def cells_of(scene):
     return [tuple(int(v) for v in np.unravel_index(i, scene.z.shape)) for i in chosen]
 
 
-def fits(p, claimed, k, confidence):
+def fits(p, claimed, k, confidence, tails="normal"):
     """Do the product's p and verdict follow from this k?"""
-    z = z_two_sided(confidence)
+    z = z_two_sided(confidence, tails)
     tie = min(abs(k - z), abs(k + z)) <= TIE
-    return abs(p - probability(k, confidence)) <= P_TOLERANCE and (claimed == verdict(k, confidence) or tie)
+    return abs(p - probability(k, confidence, tails)) <= P_TOLERANCE and (claimed == verdict(k, confidence, tails) or tie)
 
 
 def agreement(scene, result=None, heights=False):
@@ -108,7 +112,7 @@ def agreement(scene, result=None, heights=False):
     certain = likely = None
     if heights:
         certain, likely = placed(result, result.lowest_visible_height, scene), placed(result, result.likely_visible_height, scene)
-    z = z_two_sided(scene.confidence)
+    tails, z = scene.errors.tails, scene.z_two_sided
     xy = scene.xy(oracle)
     wrong = []
 
@@ -122,11 +126,12 @@ def agreement(scene, result=None, heights=False):
                 complain(cell, f"not asked, yet p {p[cell]}, verdict {claimed[cell]}")
             continue
         candidates = [sight]
-        if not _cell_fits(sight, cell, p, claimed, certain, likely, scene.confidence, z):
+        if not _cell_fits(sight, cell, p, claimed, certain, likely, scene):
             candidates.extend(admissible(oracle, scene, xy, cell))
-        if not any(_cell_fits(s, cell, p, claimed, certain, likely, scene.confidence, z) for s in candidates):
+        if not any(_cell_fits(s, cell, p, claimed, certain, likely, scene) for s in candidates):
             text = f"p {p[cell]:.5f} verdict {claimed[cell]}, definition k {[f'{s.k:.7f}' for s in candidates]} " \
-                   f"p {probability(sight.k, scene.confidence):.5f} verdict {verdict(sight.k, scene.confidence)} at {sight.distance:.1f} m"
+                   f"p {probability(sight.k, scene.confidence, tails):.5f} verdict {verdict(sight.k, scene.confidence, tails)} " \
+                   f"at {sight.distance:.1f} m"
             if heights:
                 text += f"; certain {certain[cell]} likely {likely[cell]}, definition {sight.needed_height(z)} {sight.needed_height(0)}"
             complain(cell, text)
@@ -143,10 +148,10 @@ def admissible(oracle, scene, xy, cell):
             yield oracle.sight(xy, t_xy, scene.observer_height, scene.target_height, path=path, end_zone=zone, **scene.how)
 
 
-def _cell_fits(sight, cell, p, claimed, certain, likely, confidence, z):
-    if not fits(p[cell], claimed[cell], sight.k, confidence):
+def _cell_fits(sight, cell, p, claimed, certain, likely, scene):
+    if not fits(p[cell], claimed[cell], sight.k, scene.confidence, scene.errors.tails):
         return False
-    return certain is None or (_height_fits(certain[cell], sight.needed_height(z)) and _height_fits(likely[cell], sight.needed_height(0.0)))
+    return certain is None or (_height_fits(certain[cell], sight.needed_height(scene.z_two_sided)) and _height_fits(likely[cell], sight.needed_height(0.0)))
 
 
 def _height_fits(given, definition):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Exact: for every cell, verdict and p are what the definition says (|p - definition| <= 0.005, verdicts equal but for ties
 of 1e-6 in k), in every CRS, for every error model, with and without holes."""
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import terrains
@@ -70,6 +72,12 @@ ERROR_MODELS = [
     utm("growth of a raster", errors=Errors(vertical=0.1, delta=terrains.noise(SMALL, 34, 3.0), model="growth", exponent=1.4)),
     utm("large sigma", errors=Errors(vertical=9.0, horizontal=4.0, delta=5.0, range=4.0)),
     utm("horizontal error alone", errors=Errors(vertical=0.0, horizontal=2.0)),
+] + [
+    utm(f"{tails} tails, confidence {confidence}", errors=replace(SOFT, tails=tails), confidence=confidence)
+    for tails in ("laplace", "student") for confidence in (0.5, 0.95, 0.999)
+] + [
+    utm("student tails, standing on the ground", errors=Errors(vertical=terrains.noise(SMALL, 35, 2.0), delta=1.0, range=4.0, tails="student"),
+        how=dict(stand="ground")),
 ]
 
 OBSERVERS = [

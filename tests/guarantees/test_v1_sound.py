@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import terrains
 from judge import NORTH_UP, Scene, placed
-from sight_oracle import END_ZONE, FLOOR, Errors, z_two_sided
+from sight_oracle import END_ZONE, FLOOR, Errors
 
 SHAPE = (16, 18)
 SAG = 1e-4   # metres: the curved line sinks below the chord between two crossings by at most cell^2 / 8R
@@ -21,7 +21,9 @@ SCENES = [Scene("fractal", terrains.fractal(SHAPE, 71), **UTM, **STEPS),
           Scene("noise", terrains.noise(SHAPE, 72), NORTH_UP, **{**STEPS, "observer_height": 8.0}),
           Scene("degrees", terrains.fractal(SHAPE, 73, 150.0), (10, 1e-3, 0, 66, 0, -1e-3), "EPSG:4326", **STEPS),
           Scene("terraces, errors as raster", terrains.plateaus(SHAPE, 74), **UTM,
-                **{**STEPS, "errors": Errors(vertical=terrains.noise(SHAPE, 75, 1.5))})]
+                **{**STEPS, "errors": Errors(vertical=terrains.noise(SHAPE, 75, 1.5))}),
+          Scene("Student's tails", terrains.fractal(SHAPE, 77), **UTM,
+                **{**STEPS, "errors": Errors(vertical=0.5, horizontal=0.7, tails="student"), "confidence": 0.99, "observer_height": 8.0})]
 
 
 def moved_surfaces(rng):
@@ -40,7 +42,7 @@ def test_along_the_whole_line(scene):
     oracle = scene.oracle()
     result = scene.viewshed(oracle)
     claimed = placed(result, result.verdict, scene)
-    xy, z = scene.xy(oracle), z_two_sided(scene.confidence)
+    xy, z = scene.xy(oracle), scene.z_two_sided
     surfaces = [oracle.z + z * u * oracle.sigma_s for u in moved_surfaces(np.random.default_rng(5))]
     assert set(np.unique(claimed)) >= {0, 2}
     for row, col in np.argwhere(claimed != 1):
@@ -85,15 +87,16 @@ def least_clearances(oracle, o_xy, t_xy, height, surfaces, z):
     return least
 
 
-@pytest.mark.parametrize("errors", [Errors(0.4, 0.5, 2.0, 4.0), Errors(0.2, 0.0, 0.3), Errors(0.1, 0.0, 3.0, None, "growth", 0.7)],
-                         ids=["gaussian", "paper's", "growth"])
+@pytest.mark.parametrize("errors", [Errors(0.4, 0.5, 2.0, 4.0), Errors(0.2, 0.0, 0.3), Errors(0.1, 0.0, 3.0, None, "growth", 0.7),
+                                    Errors(0.4, 0.5, 2.0, 4.0, tails="laplace")],
+                         ids=["gaussian", "paper's", "growth", "Laplace's tails"])
 @pytest.mark.parametrize("stand", ["model", "ground"])
 def test_at_the_judged_places(errors, stand):
     scene = Scene("fractal", terrains.fractal(SHAPE, 76), **UTM, errors=errors, observer=(9.0, 7.0), observer_height=6.0, confidence=0.8,
                   target_height=4.0, how=dict(stand=stand))
     oracle = scene.oracle()
     result = scene.viewshed(oracle)
-    claimed, z = placed(result, result.verdict, scene), z_two_sided(scene.confidence)
+    claimed, z = placed(result, result.verdict, scene), scene.z_two_sided
     rng = np.random.default_rng(6)
     seen = set()
     for (row, col), sight in oracle.viewshed(scene.xy(oracle), 6.0, 4.0, stand=stand).items():

@@ -22,11 +22,12 @@ ERRORS = (dict(), dict(delta=0.25, range_m=2.0))   # by seed: sampling error alo
 
 
 class Scene:
-    def __init__(self, name, seed, delta=0.0, range_m=None):
+    def __init__(self, name, seed, delta=0.0, range_m=None, tails="normal"):
         self.rng = np.random.default_rng([seed, *name.encode()])
         vertices, faces = tins.ALL[name](self.rng)
         given = sb.Tin(vertices, faces, sigma_v=self.rng.uniform(0.04, 0.1, len(vertices)))
-        model = sb.ErrorModel(horizontal_rmse=0.03, geologic_variation=delta, geologic_range=range_m)
+        model = sb.ErrorModel(horizontal_rmse=0.03, geologic_variation=delta, geologic_range=range_m, tails=tails)
+        self.tails = tails
         self.volume = sb.ErrorVolume.build(given, model, voxel=0.2)
         self.oracle = TinOracle(given.vertices, given.faces, given.sigma_v, 0.03, delta, range_m=range_m)
         self.solid = name == "bodies"
@@ -56,24 +57,40 @@ class Scene:
         return places[asked], np.array([one[0] for one in found if one is not None])
 
 
+def judged(scene, n, label):
+    """Of the n-th eye: how many targets got each verdict, and what refutes those claims that were looked at."""
+    eye, confidence = scene.eye(n % 2 == 1), (0.95, 0.8)[n % 2]
+    places, verdicts = scene.answers(eye, confidence)
+    z, wrong = z_two_sided(confidence, scene.tails), []
+    for verdict, count in CHECKED.items():
+        claimed = np.flatnonzero(verdicts == verdict)
+        for i in scene.rng.permutation(claimed)[:count]:
+            why = (scene.oracle.refutes_hidden(eye, places[i], z, STEP, scene.solid) if verdict == 0 else
+                   scene.oracle.refutes_visible(eye, places[i], z, SAMPLES))
+            if why:
+                called = ("hidden", "", "visible")[verdict]
+                wrong.append(f"{label}, c {confidence}, {eye} to {places[i]}: called {called}, but {why}")
+    return np.bincount(verdicts, minlength=3), wrong
+
+
+@pytest.mark.parametrize("name", ["arch", "building"])
+@pytest.mark.parametrize("tails", ["laplace", "student"])
+def test_claims_hold_under_other_tails(name, tails):
+    scene = Scene(name, 5, delta=0.25, range_m=2.0, tails=tails)
+    counts, wrong = judged(scene, 0, tails)
+    assert not wrong, f"{len(wrong)} claims are refuted:\n" + "\n".join(wrong[:10])
+    assert counts[0] >= CHECKED[0] and counts[2] >= CHECKED[2]
+
+
 @pytest.mark.parametrize("name", tins.ALL)
 def test_claims_hold_for_the_triangles(name):
     counts, wrong = np.zeros(3, int), []
     for seed, errors in enumerate(ERRORS):
         scene = Scene(name, seed, **errors)
         for n in range(EYES):
-            eye, confidence = scene.eye(n % 2 == 1), (0.95, 0.8)[n % 2]
-            places, verdicts = scene.answers(eye, confidence)
-            counts += np.bincount(verdicts, minlength=3)
-            z = z_two_sided(confidence)
-            for verdict, count in CHECKED.items():
-                claimed = np.flatnonzero(verdicts == verdict)
-                for i in scene.rng.permutation(claimed)[:count]:
-                    why = (scene.oracle.refutes_hidden(eye, places[i], z, STEP, scene.solid) if verdict == 0 else
-                           scene.oracle.refutes_visible(eye, places[i], z, SAMPLES))
-                    if why:
-                        called = ("hidden", "", "visible")[verdict]
-                        wrong.append(f"seed {seed}, c {confidence}, {eye} to {places[i]}: called {called}, but {why}")
+            seen, refuted = judged(scene, n, f"seed {seed}")
+            counts += seen
+            wrong += refuted
     shares = counts / counts.sum()
     print(f"{name}: hidden {shares[0]:.3f}, uncertain {shares[1]:.3f}, visible {shares[2]:.3f} of {counts.sum()}")
     assert not wrong, f"{len(wrong)} claims are refuted:\n" + "\n".join(wrong[:10])

@@ -161,7 +161,7 @@ def test_an_estimate_leaves_arrays_alone():
     errors = np.full(dem.shape, 0.7, np.float32)
     model = sb.estimate_error(dem, sb.ErrorModel(errors))
     assert model.vertical_rmse is errors or np.array_equal(model.vertical_rmse, errors)
-    assert set(model.report) == {"growth_exponent", "typical_sigma", "rounding", "warnings"}
+    assert {"growth_exponent", "typical_sigma", "rounding", "warnings"} <= set(model.report)
 
 
 def test_observers_as_an_array():

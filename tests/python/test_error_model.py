@@ -46,6 +46,7 @@ def test_nothing_said_and_zero_said():
     sb.ErrorModel(), sb.ErrorModel(1.5, 0.5, 2.0), sb.ErrorModel(0.0, 0.0, 0.0), sb.ErrorModel(1.0, 0.0, 2.0, 7.5),
     sb.ErrorModel(1.0, 0.0, 2.0, 7.5, "step"), sb.ErrorModel(1.0, 0.0, 2.0, geologic_model="growth", growth_exponent=1.2),
     sb.ErrorModel("sigma.tif", 0.0, "delta.tif"),
+    sb.ErrorModel(1.0, tails="student", correlation_length=12.5, shared_bias=-0.3, samples_or_means="means", ridge_gain=0.1),
     sb.ErrorModel(1.0, 0.0, 0.5, terrain_types="types.gpkg", terrain_field="class", terrain_table={"a": 1.5, "b": 3.0}),
 ], ids=repr)
 def test_json_round_trip(model, tmp_path):
@@ -54,9 +55,19 @@ def test_json_round_trip(model, tmp_path):
     (tmp_path / "model.json").write_text(text)
     for back in (sb.ErrorModel.from_json(text), sb.ErrorModel.from_json(tmp_path / "model.json")):
         for field in ("vertical_rmse", "horizontal_rmse", "geologic_variation", "geologic_range", "geologic_model", "growth_exponent",
-                      "terrain_types", "terrain_field", "terrain_table"):
+                      "terrain_types", "terrain_field", "terrain_table", "tails", "correlation_length", "shared_bias",
+                      "samples_or_means", "ridge_gain"):
             assert getattr(back, field) == getattr(model, field), field
         assert back.to_json() == text
+
+
+def test_the_nature_of_errors():
+    model = sb.ErrorModel()
+    assert (model.tails, model.correlation_length, model.shared_bias, model.samples_or_means, model.ridge_gain) == (None, 0, 0, None, None)
+    assert sb.ErrorModel(samples_or_means="auto").samples_or_means is None
+    for wrong in (dict(tails="cauchy"), dict(correlation_length=-1), dict(shared_bias=1e5), dict(samples_or_means="both"), dict(ridge_gain=3)):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            sb.ErrorModel(**wrong)
 
 
 def test_json_cannot_hold_arrays():
@@ -237,22 +248,23 @@ def smooth_and_rough(side=200):
 
 def test_growth_and_size_are_the_definition_s():
     z = smooth_and_rough()
-    found = sb.estimate_error(sb.Dem(z, UTM_GT, rasters.wkt_of(UTM)))
+    found = sb.estimate_error(sb.Dem(z, UTM_GT, rasters.wkt_of(UTM)), samples_or_means="samples")
     exponent, sd = error_oracle.growth(z)
     assert found.report["growth_exponent"] == pytest.approx(exponent, abs=0.01)
-    assert found.report["typical_sigma"] == pytest.approx(sd, rel=0.1)
+    assert found.report["typical_sigma"] == pytest.approx(sd * found.report["local_scale"], rel=0.1)
     assert found.growth_exponent is None or found.growth_exponent == found.report["growth_exponent"]
 
 
 @pytest.mark.parametrize("south_up", [False, True])
 def test_local_map(south_up):
-    """Measured through the error surfaces: sigma at a cell's corner is the map times sqrt2^H (square cells)."""
+    """Measured through the error surfaces: sigma at a cell's corner, t = sqrt2 (square cells), is the map times
+    t^(min(H, 1) / 2)."""
     z = smooth_and_rough(120)
     gt = (612340.0, 10.0, 0.0, 5538120.0, 0.0, 10.0 if south_up else -10.0)
     dem = sb.Dem(z, gt, rasters.wkt_of(UTM))
-    model = sb.estimate_error(dem)
+    model = sb.estimate_error(dem, samples_or_means="samples")
     exponent = model.report["growth_exponent"]
-    expected = error_oracle.local_variation(z, exponent, anti=south_up) * 2 ** (exponent / 2)
+    expected = error_oracle.local_variation(z, exponent, anti=south_up) * 2 ** (min(exponent, 1) / 4) * model.report["local_scale"]
     sigma = sb.error_surfaces(dem, model).sigma
     inside = np.isfinite(expected)
     # Cells are square to the projection's distortion only.

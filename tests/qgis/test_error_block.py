@@ -58,6 +58,23 @@ def test_gaussian_range_and_step(used):
     assert found["geologic_model"] == "step"
 
 
+def test_the_nature_of_errors(used, tmp_path):
+    found = used(VERTICAL_ACCURACY=1.0, GEOLOGIC_VARIATION=0.0, TAILS="student", CORRELATION_LENGTH=12.5, SHARED_BIAS=-0.5,
+                 SAMPLES_OR_MEANS="means")  # fmt: skip
+    said = [found[name] for name in ("tails", "correlation_length", "shared_bias", "samples_or_means")]
+    assert said == ["student", 12.5, -0.5, "means"]
+    found = used(VERTICAL_ACCURACY=1.0, GEOLOGIC_VARIATION=0.0, TAILS="auto", SAMPLES_OR_MEANS="auto", SHARED_BIAS=0.0)
+    assert "shared_bias" not in found and "correlation_length" not in found
+
+
+def test_products_stand_for_what_was_not_said(used, tmp_path):
+    assert used(ERROR_PRODUCT="ned")["vertical_rmse"] == 1.55
+    found = used(ERROR_PRODUCT="ned", VERTICAL_ACCURACY=0.4, GEOLOGIC_VARIATION=0.0)
+    assert (found["vertical_rmse"], found["geologic_variation"]) == (0.4, 0.0)
+    raster = scenes.write_dem(tmp_path / "e.tif", numpy.full((scenes.ROWS, scenes.COLS), 2.0, "float32"))
+    assert "raster" in used(ERROR_PRODUCT="ned", ERROR_RASTER=str(raster))["vertical_rmse"]
+
+
 def test_rasters(used, tmp_path):
     errors = numpy.where(numpy.arange(scenes.COLS) < 20, 1.0, 3.0)
     raster = scenes.write_dem(tmp_path / "errors.tif", numpy.tile(errors, (scenes.ROWS, 1)).astype("float32"))

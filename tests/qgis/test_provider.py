@@ -10,12 +10,14 @@ from qgis.core import (
     QgsProcessingParameterDefinition,
 )
 
-VISIBILITY = ("confidenceviewshed", "probableviewshed", "errorsurfaces", "lineofsightprofile", "intervisibility")
+VISIBILITY = ("confidenceviewshed", "probableviewshed", "errorsurfaces", "estimateerror", "lineofsightprofile", "intervisibility")
+WITH_ERROR_BLOCK = tuple(name for name in VISIBILITY if name != "estimateerror")
 VOLUME = ("builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster")
 SIMPLIFICATION = ("demtotin", "simplifytin", "verifytin")
 ALGORITHMS = VISIBILITY + VOLUME + SIMPLIFICATION
 ERROR_BLOCK = """VERTICAL_ACCURACY VERTICAL_MEASURE GEOLOGIC_VARIATION HORIZONTAL_ACCURACY HORIZONTAL_MEASURE
     ERROR_RASTER GEOLOGIC_MODEL GEOLOGIC_RANGE GEOLOGIC_RASTER TERRAIN_TYPES TERRAIN_FIELD TERRAIN_TABLE
+    ERROR_PRODUCT TAILS CORRELATION_LENGTH SHARED_BIAS SAMPLES_OR_MEANS
     ERROR_MODEL""".split()
 VIEWSHED = """INPUT BAND OBSERVERS OBSERVER OBSERVER_HEIGHT TARGET_HEIGHT MAX_DISTANCE CONFIDENCE COMBINE MIN_DISTANCE
     AZIMUTH_FROM AZIMUTH_TO ANGLE_FROM ANGLE_TO OBSERVER_HEIGHT_FIELD TARGET_HEIGHT_FIELD HEIGHT_REFERENCE GROUND
@@ -65,7 +67,7 @@ def test_error_block_is_the_same_everywhere(provider):
         block = [algorithm.parameterDefinition(name) for name in ERROR_BLOCK]
         return [(one.type(), one.description(), one.defaultValue(), one.flags(), one.help()) for one in block]
 
-    blocks = [described(provider.algorithm(name)) for name in (*VISIBILITY, "builderrorvolume", "demtotin", "simplifytin")]
+    blocks = [described(provider.algorithm(name)) for name in (*WITH_ERROR_BLOCK, "builderrorvolume", "demtotin", "simplifytin")]
     assert all(block == blocks[0] for block in blocks)
 
 

@@ -26,7 +26,8 @@ def geologic(d, delta, model="gaussian", range_m=None, exponent=None, cell=None)
     if model == "step":
         share = 0.0 if d < range_m else 1.0
     elif model == "growth":
-        share = (2 * d / cell) ** exponent
+        t, h = 2 * d / cell, np.minimum(exponent, 1.0)
+        share = np.where(t < 1, (np.minimum(t, 1) * (2 - np.minimum(t, 1))) ** h, np.maximum(t, 1) ** (h / 2))
     else:
         share = 1 - math.exp(-0.5 * (delta * d if range_m is None else d / range_m) ** 2)
     return delta / Z95 * share
@@ -50,11 +51,20 @@ def residuals(z, q, anti=False):
 
 
 def growth(z):
-    """(H, sd half a spacing from a sample): rows and columns, the same places for both spacings."""
+    """(H, sd half a spacing from a sample): rows and columns, the same places for both spacings; H by tiles of 32 x 32,
+    averaged over their places."""
     near, far = residuals(z, 1)[:2], residuals(z, 2)[:2]
     both = np.isfinite(far[0]) & np.isfinite(far[1]) & np.isfinite(near[0]) & np.isfinite(near[1])
     s2, s4 = (math.sqrt(np.mean([np.mean(e[both] ** 2) for e in pair])) for pair in (near, far))
-    exponent = math.log2(s4 / s2)
+    exponents, counts = [], []
+    for r in range(0, both.shape[0], 32):
+        for c in range(0, both.shape[1], 32):
+            tile = np.s_[r:r + 32, c:c + 32]
+            if both[tile].any():
+                squares = [np.mean([np.mean(e[tile][both[tile]] ** 2) for e in pair]) for pair in (near, far)]
+                exponents.append(0.5 * math.log2(squares[1] / squares[0]))
+                counts.append(both[tile].sum())
+    exponent = float(np.average(exponents, weights=counts))
     return exponent, s2 * 2 ** -exponent
 
 

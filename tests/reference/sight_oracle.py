@@ -17,6 +17,7 @@ own row order is kept throughout: `diagonal` says which of a square's two diagon
 """
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass, field
 from statistics import NormalDist
@@ -30,7 +31,7 @@ END_FRACTIONS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 3 / 4)
 FLOOR = 0.001           # smallest sigma, metres
 END_ZONE = 1.5          # cells from an end where sigma_g alone counts
 PLANE_RADIUS = 6371008.8
-CERTAIN_K = 3.29        # beyond, p is 0 or 1
+CERTAIN_K = 3.29        # beyond, p is 0 or 1; other tails than the normal: at the same p
 SAMPLES_PER_CELL = 6    # dense sampling of the path before root finding
 SNAP = 2e-8             # a sample coordinate this near to an integer is that integer (UTM northings carry 1e-9 m)
 ROOT = 1e-8             # crossings are found to this many cells
@@ -39,24 +40,55 @@ SLIVER = 1e-4           # a nodata sample of this weight or less makes no hole
 AT_END = 1e-4           # a place this many cells from an end is the end itself, and not judged
 
 
-def z_two_sided(confidence):
+# Densities of variance 1; Student's has 5 degrees of freedom.
+DENSITIES = {
+    "laplace": lambda k: np.exp(-math.sqrt(2) * np.abs(k)) / math.sqrt(2),
+    "student": lambda k: 8 / (3 * math.sqrt(3) * math.pi) * (1 + k * k / 3) ** -3.0,
+}
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(60)
+
+
+def cdf(k, tails="normal"):
+    """F(k), by integrating the density from 0."""
+    if tails == "normal":
+        return NORMAL.cdf(k)
+    return 0.5 + float(np.sum(_WEIGHTS * DENSITIES[tails]((_NODES + 1) * k / 2))) * k / 2
+
+
+def quantile(p, tails):
+    """The k with F(k) = p >= 1/2, by bisection."""
+    low, high = 0.0, 100.0
+    while high - low > 1e-13 * high:
+        middle = (low + high) / 2
+        low, high = (middle, high) if cdf(middle, tails) < p else (low, middle)
+    return low
+
+
+@functools.lru_cache
+def z_two_sided(confidence, tails="normal"):
     """z(c): 0.95 -> 1.960."""
-    return NORMAL.inv_cdf(0.5 + confidence / 2)
+    p = 0.5 + confidence / 2
+    return NORMAL.inv_cdf(p) if tails == "normal" else quantile(p, tails)
 
 
-def probability(k, confidence):
-    """p of the critical clearance ratio, exactly 0 or 1 beyond max(3.29, z(c))."""
-    limit = max(CERTAIN_K, z_two_sided(confidence))
+@functools.lru_cache
+def certain_k(tails="normal"):
+    return CERTAIN_K if tails == "normal" else quantile(NORMAL.cdf(CERTAIN_K), tails)
+
+
+def probability(k, confidence, tails="normal"):
+    """p of the critical clearance ratio, exactly 0 or 1 beyond max(certain_k(), z(c))."""
+    limit = max(certain_k(tails), z_two_sided(confidence, tails))
     if k >= limit:
         return 1.0
     if k <= -limit:
         return 0.0
-    return NORMAL.cdf(k)
+    return cdf(k, tails)
 
 
-def verdict(k, confidence):
+def verdict(k, confidence, tails="normal"):
     """2 visible, 1 uncertain, 0 hidden."""
-    z = z_two_sided(confidence)
+    z = z_two_sided(confidence, tails)
     return 2 if k >= z else 0 if k <= -z else 1
 
 
@@ -164,6 +196,7 @@ class Errors:
     range: float | None = None
     model: str = "gaussian"
     exponent: float | None = None
+    tails: str = "normal"
 
 
 @dataclass

@@ -14,6 +14,10 @@ def test_quantiles():
     assert z_two_sided(0.95) == pytest.approx(1.959964, abs=1e-6)
     assert (probability(3.3, 0.95), probability(-3.3, 0.95), probability(0, 0.95)) == (1.0, 0.0, 0.5)
     assert [verdict(k, 0.95) for k in (1.97, 1.9, -1.9, -1.97)] == [2, 1, 1, 0]
+    # Tables of t with 5 degrees of freedom, over its sd sqrt(5/3); the Laplace distribution in closed form.
+    assert z_two_sided(0.95, "student") == pytest.approx(2.570582 / math.sqrt(5 / 3), abs=1e-6)
+    assert z_two_sided(0.999, "student") == pytest.approx(6.868827 / math.sqrt(5 / 3), abs=1e-6)
+    assert z_two_sided(0.99, "laplace") == pytest.approx(math.log(100) / math.sqrt(2), abs=1e-9)
 
 
 def test_wall_of_five_metres():

@@ -74,6 +74,24 @@ TEST(ErrorModel, NumbersOutOfRangeNameFieldValueAndRange) {
   EXPECT_EQ(complaint([](ErrorModel& m) { m.vertical_rmse = 10000.0; }), "");
 }
 
+TEST(ErrorModel, TheNatureOfErrorsHasRanges) {
+  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.correlation_length = -1; }),
+                   "correlation_length is -1; allowed are 0 to 1000000 m"));
+  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.shared_bias = -10001; }), "shared_bias is -10001"));
+  EXPECT_TRUE(says(complaint([](ErrorModel& m) { m.shared_bias = std::nan(""); }), "shared_bias is nan"));
+  EXPECT_TRUE(
+      says(complaint([](ErrorModel& m) { m.ridge_gain = 2.5; }), "ridge_gain is 2.5; allowed are -2 to 2"));
+  EXPECT_EQ(complaint([](ErrorModel& m) {
+              m.correlation_length = 30;
+              m.shared_bias = -4;
+              m.ridge_gain = -0.1;
+              m.tails = Tails::kStudent;
+              m.samples_or_means = CellContent::kMeans;
+            }),
+            "");
+  EXPECT_EQ(ErrorModel().tails_used(), Tails::kNormal);
+}
+
 TEST(ErrorModel, StepNeedsARange) {
   EXPECT_TRUE(
       says(complaint([](ErrorModel& m) { m.geologic_shape = GeologicShape::kStep; }), "geologic_range"));

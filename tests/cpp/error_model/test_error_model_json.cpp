@@ -49,6 +49,35 @@ TEST(ErrorModelJson, EveryFieldComesBackToTheLastBit) {
   EXPECT_EQ(back.to_json(), model.to_json());
 }
 
+TEST(ErrorModelJson, TheNatureOfErrorsComesBackToTheLastBit) {
+  ErrorModel model;
+  model.tails = Tails::kLaplace;
+  model.correlation_length = 100.0 / 3;
+  model.shared_bias = -0.1;
+  model.samples_or_means = CellContent::kMeans;
+  model.ridge_gain = 1.0 / 7;
+  const ErrorModel back = ErrorModel::from_json(model.to_json());
+  EXPECT_EQ(back.tails, Tails::kLaplace);
+  EXPECT_EQ(back.correlation_length, 100.0 / 3);
+  EXPECT_EQ(back.shared_bias, -0.1);
+  EXPECT_EQ(back.samples_or_means, CellContent::kMeans);
+  EXPECT_EQ(back.ridge_gain, 1.0 / 7);
+  EXPECT_EQ(back.to_json(), model.to_json());
+}
+
+TEST(ErrorModelJson, TheNatureOfErrorsIsWrittenOnlyWhenSaid) {
+  const std::string text = ErrorModel().to_json();
+  for (const char* name : {"tails", "correlation_length", "shared_bias", "samples_or_means", "ridge_gain"}) {
+    EXPECT_EQ(text.find(name), std::string::npos) << name;
+  }
+  const ErrorModel none =
+      ErrorModel::from_json(R"({"tails": null, "samples_or_means": null, "ridge_gain": null})");
+  EXPECT_FALSE(none.tails || none.samples_or_means || none.ridge_gain);
+  EXPECT_TRUE(says(refusal(R"({"tails": "cauchy"})"), "'normal', 'laplace' and 'student'"));
+  EXPECT_TRUE(says(refusal(R"({"samples_or_means": "both"})"), "'samples' and 'means'"));
+  EXPECT_TRUE(says(refusal(R"({"shared_bias": "much"})"), "shared_bias"));
+}
+
 TEST(ErrorModelJson, ACompletedRecipeComesBack) {
   ErrorModel model;
   model.vertical_rmse = 0.0;

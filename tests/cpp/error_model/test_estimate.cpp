@@ -21,7 +21,7 @@ using testing::says;
 
 Estimate learnt(Grid<float> heights, const std::array<double, 6>& geotransform = testing::kNorthUp) {
   Progress progress;
-  return estimate(*dem_of(std::move(heights), geotransform), progress);
+  return estimate(*dem_of(std::move(heights), geotransform), CellContent::kSamples, progress);
 }
 
 // A random walk in both directions: increments independent, so that H = 1/2.
@@ -70,8 +70,9 @@ TEST(Estimate, TypicalIsTheRmsOfTheLocalMap) {
   const Grid<float> z = grid_from(400, 400, [](int r, int c) { return hills(r, c, 0.9, 8); });
   const Estimate found = learnt(testing::copy_of(z));
   Progress progress;
-  const Grid<float> map =
-      local_variation(Surroundings(z), found.growth_exponent, found.typical_m, Workers(1), progress);
+  const Grid<float> map = local_variation(
+      Surroundings(z), residual_scale(found.growth_exponent, found.content, found.local_scale),
+      found.typical_m, Workers(1), progress);
   double sum = 0;
   for (const float v : map.values()) sum += double(v) * v;
   EXPECT_NEAR(std::sqrt(sum / double(map.size())) / found.typical_m, 1, 0.01);
@@ -135,7 +136,7 @@ TEST(Estimate, ReadsSpreadBlocksOnTheFilesTiles) {
         dem_of(grid_from(kRows, kCols, [](int r, int c) { return noise(r / 2, c / 2, 3); }), geotransform);
     const Watched watched(*dem, geotransform);
     Progress progress;
-    estimate(watched, progress);
+    estimate(watched, std::nullopt, progress);
     EXPECT_LE(watched.windows.size(), static_cast<std::size_t>(kEstimateBlocks));
     EXPECT_GE(watched.windows.size(), static_cast<std::size_t>(kEstimateBlocks) * 3 / 4);
     Window all;
@@ -154,7 +155,7 @@ TEST(Estimate, LooksFurtherWhenMostHeightsAreMissing) {
   const auto dem = dem_of(
       grid_from(2600, 2600, [](int r, int c) { return r < 100 && c < 100 ? noise(r, c, 3) : double(kNan); }));
   Progress progress;
-  const Estimate found = estimate(*dem, progress);
+  const Estimate found = estimate(*dem, std::nullopt, progress);
   EXPECT_TRUE(found.warnings.empty());
   EXPECT_GT(found.typical_m, 0);
 }

@@ -39,7 +39,10 @@ TEST(GrowthProfile, GrowthIsOneHalfASpacingAway) {
   profile.half_spacing_m = 5;
   EXPECT_EQ(profile(0, 1), 0);
   EXPECT_DOUBLE_EQ(profile(5, 1), 1);
-  EXPECT_NEAR(profile(5 * std::sqrt(2.0), 1), std::pow(2, 0.65), 1e-14);  // the middle of a square
+  EXPECT_NEAR(profile(5 * std::sqrt(2.0), 1), std::pow(2, 0.25), 1e-14);  // the middle of a square
+  EXPECT_DOUBLE_EQ(profile(2.5, 1), 0.75);                                // t (2 - t)
+  profile.exponent = 0.6;
+  EXPECT_DOUBLE_EQ(profile(2.5, 1), std::pow(0.75, 0.6));
 }
 
 TEST(GrowthProfile, NeverFallsWithDistance) {

@@ -22,7 +22,8 @@ using testing::part_of;
 
 Grid<float> map_of(const Grid<float>& heights, double exponent = 1, double typical = 9, int threads = 1) {
   Progress progress;
-  return local_variation(Surroundings(heights), exponent, typical, Workers(threads), progress);
+  return local_variation(Surroundings(heights), residual_scale(exponent, CellContent::kSamples), typical,
+                         Workers(threads), progress);
 }
 
 // The definition in the header, written down once more.
@@ -108,12 +109,14 @@ TEST(LocalVariation, DoesNotDependOnTheWindow) {
     const auto dem = dem_of(copy_of(whole), geotransform);
     Progress progress;
     const Grid<float> all = dem->read(dem->window(), progress);
-    const Grid<float> map = local_variation(Surroundings(all), 0.9, 1, Workers(2), progress);
+    const Grid<float> map = local_variation(Surroundings(all), residual_scale(0.9, CellContent::kSamples), 1,
+                                            Workers(2), progress);
     for (const Window& w : {Window{0, 0, 90, 200}, Window{3, 5, 40, 100}, Window{1, 1, 88, 198},
                             Window{60, 150, 30, 50}, Window{17, 64, 1, 1}, Window{0, 70, 2, 130}}) {
       const Grid<float> heights = dem->read(w, progress);
       const Grid<float> part =
-          local_variation(Surroundings(heights, w, *dem, progress), 0.9, 1, Workers(2), progress);
+          local_variation(Surroundings(heights, w, *dem, progress),
+                          residual_scale(0.9, CellContent::kSamples), 1, Workers(2), progress);
       const Grid<float> expected = part_of(map, w);
       EXPECT_EQ(std::memcmp(part.data(), expected.data(), part.size() * sizeof(float)), 0)
           << w.col << " " << w.row;
@@ -124,7 +127,9 @@ TEST(LocalVariation, DoesNotDependOnTheWindow) {
 TEST(LocalVariation, CanBeCancelled) {
   const Grid<float> z(200, 200, 1.0f);
   Progress progress([](double) { return false; });
-  EXPECT_THROW(local_variation(Surroundings(z), 1, 1, Workers(1), progress), Cancelled);
+  EXPECT_THROW(
+      local_variation(Surroundings(z), residual_scale(1, CellContent::kSamples), 1, Workers(1), progress),
+      Cancelled);
 }
 
 }  // namespace

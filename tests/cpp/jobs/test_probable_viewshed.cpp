@@ -103,7 +103,9 @@ TEST(ProbableViewshed, OneDoubtfulSampleHidesAsOftenAsItIsHigher) {
   // The posterior's share of it: four neighbours that are as doubtful say a quarter of the variance.
   const double spread = 4 * std::sqrt(0.25 / 1.25), expected = normal_cdf(1.7 / spread);
   constexpr int kRealisations = 8000;
-  const ProbableViewshed made = plain.seen(at(10, 5), model, flat(kRealisations));
+  ProbableOptions options = flat(kRealisations);
+  options.precision = 0;
+  const ProbableViewshed made = plain.seen(at(10, 5), model, options);
   const double error = std::sqrt(expected * (1 - expected) / kRealisations);
   EXPECT_NEAR(made.probability.at(10, 35), expected, 4 * error);
   EXPECT_NEAR(made.standard_error.at(10, 35), error, 0.1 * error);
@@ -112,15 +114,22 @@ TEST(ProbableViewshed, OneDoubtfulSampleHidesAsOftenAsItIsHigher) {
   EXPECT_EQ(made.verdict.at(3, 35), kVisible);
 }
 
-// A share of 0 or of all is no certainty when there are few.
+// A share of 0 or of all is no certainty when there are few, but for what no draw changes.
 TEST(ProbableViewshed, ClaimsNeedEnoughRealisations) {
-  const Dem wall(21, 41, [](int, int c) { return c == 20 ? 30 : 0; });
-  const ProbableViewshed few = wall.seen(at(10, 5), no_error(), flat(32)),
-                         many = wall.seen(at(10, 5), no_error(), flat(400));
+  const Dem walls(41, 41, [](int r, int c) { return c == 20 ? (r < 20 ? 14 : 800) : 0; });
+  ErrorModel model = no_error();
+  auto sigma = Grid<float>(41, 41, 0);
+  for (int r = 0; r < 41; ++r) sigma.at(r, 20) = 3;
+  model.vertical_rmse = std::make_shared<const Grid<float>>(std::move(sigma));
+  const ProbableViewshed few = walls.seen(at(10, 5), model, flat(32)),
+                         many = walls.seen(at(10, 5), model, flat(400));
   EXPECT_EQ(few.probability.at(10, 35), 0);
   EXPECT_EQ(few.verdict.at(10, 35), kUncertain);  // Wilson's upper end for 0 of 32 is 0.11
   EXPECT_EQ(many.verdict.at(10, 35), kHidden);
-  EXPECT_EQ(many.verdict.at(10, 8), kVisible);
+  EXPECT_EQ(many.realisations.at(10, 35), 192);  // the first look
+  EXPECT_EQ(few.verdict.at(35, 35), kHidden);
+  EXPECT_EQ(few.realisations.at(35, 35), 32);
+  EXPECT_EQ(few.verdict.at(10, 8), kVisible);
 }
 
 bool same(const Grid<float>& a, const Grid<float>& b) {

@@ -260,9 +260,9 @@ TEST(VolumeSight, a_cave_is_seen_into_through_its_mouth_only) {
 }
 
 TEST(VolumeSight, proves_no_more_than_its_bounds) {
-  EXPECT_EQ(proven_probability({-0.5f, 0.5f}), 0.5);
-  EXPECT_NEAR(proven_probability({1.0f, 2.0f}), 0.8413, 1e-4);
-  EXPECT_NEAR(proven_probability({-2.0f, -1.0f}), 0.1587, 1e-4);
+  EXPECT_EQ(proven_probability({-0.5f, 0.5f}, Tails::kNormal), 0.5);
+  EXPECT_NEAR(proven_probability({1.0f, 2.0f}, Tails::kNormal), 0.8413, 1e-4);
+  EXPECT_NEAR(proven_probability({-2.0f, -1.0f}, Tails::kNormal), 0.1587, 1e-4);
   EXPECT_EQ(verdict_of({1.97f, 3}, 1.96), kVisible);
   EXPECT_EQ(verdict_of({1.95f, 3}, 1.96), kUncertain);
   EXPECT_EQ(verdict_of({-3, -1.97f}, 1.96), kHidden);

@@ -85,7 +85,8 @@ HiddenVolume line_by_line(const Ground& ground, const std::vector<ViewPlace>& vi
           const RatioInterval ratio =
               ground.sight.ratio(ground.sight.zone(view.place), ground.sight.zone(target));
           const RatioInterval told{std::clamp(ratio.low, -most, most), std::clamp(ratio.high, -most, most)};
-          const TargetAnswer one{static_cast<float>(proven_probability(told)), verdict_of(ratio, quantile)};
+          const TargetAnswer one{static_cast<float>(proven_probability(told, Tails::kNormal)),
+                                 verdict_of(ratio, quantile)};
           answer = options.seen_from == SeenFrom::kAny ? better_of(answer, one) : worse_of(answer, one);
         }
       }

@@ -66,6 +66,7 @@ void expect_same(const ErrorVolume& a, const ErrorVolume& b) {
   EXPECT_EQ(a.voxel_m(), b.voxel_m());
   EXPECT_EQ(a.voxel_height_m(), b.voxel_height_m());
   EXPECT_EQ(a.largest_ratio(), b.largest_ratio());
+  EXPECT_EQ(a.tails(), b.tails());
   EXPECT_EQ(a.error_model(), b.error_model());
   EXPECT_EQ(a.report().voxels, b.report().voxels);
   EXPECT_EQ(a.report().warnings, b.report().warnings);
@@ -97,6 +98,22 @@ void expect_same(const ErrorVolume& a, const ErrorVolume& b) {
     const SurfacePlace s = place_on(*p, a.surface().profile(), p->corner[0].x + 0.3, p->corner[0].y + 0.2);
     const SurfacePlace t = place_on(*q, b.surface().profile(), p->corner[0].x + 0.3, p->corner[0].y + 0.2);
     EXPECT_EQ(s.between, t.between);
+  }
+}
+
+TEST_F(VolumeFile, TailsComeBackAndNormalOnesLeaveNoTrace) {
+  const auto surface = testing::random_dem(3).surface();
+  VolumeOptions options;
+  options.voxel_m = 1;
+  for (const Tails tails : {Tails::kNormal, Tails::kLaplace, Tails::kStudent}) {
+    options.tails = tails;
+    Progress progress;
+    const ErrorVolume volume = ErrorVolume::build(surface, options, progress);
+    EXPECT_EQ(volume.largest_ratio(), certain_ratio(tails));
+    EXPECT_EQ(volume.quantile(0.99), two_sided_quantile(0.99, tails));
+    const std::string path = saved(volume, name_of(tails) + ".vdb");
+    expect_same(volume, opened(path));
+    EXPECT_EQ(read(path).find("tails") == std::string::npos, tails == Tails::kNormal);
   }
 }
 

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a DEM's residuals grow from one spacing to the next, and what that says of its cells.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "terrain/grid.h"
+
+namespace sightbound {
+
+// e_q = z - (z q cells before + z q cells after) / 2 along rows and columns, for spacings 2q of 2, 4, 8 and
+// 16 cells, all at the same places.
+class ResidualGrowth {
+ public:
+  static constexpr int kSpacings = 4;
+
+  void add(const Grid<float>& block);
+
+  std::size_t places() const { return places_; }
+  // Root mean square of e_q, metres.
+  double rms(int spacing) const;
+  // log2 of rms(octave + 1) / rms(octave), tile by tile, averaged.
+  double exponent(int octave) const;
+  // 0: the exponents go on as those of samples do, 1: like those of means over the cells (which level out
+  // short spacings, in a way that follows from H: fractal_surface.h). Where H itself changes with the spacing
+  // the next octave tells how much of the change to leave out. Between 0.25 and 0.75 it is not clear.
+  double means_score() const;
+
+  // Of the truth above the middle of two samples over what that stands above the middle of the next two, by
+  // least squares at spacing 2; within 0 and 0.25.
+  double ridge_gain() const;
+
+ private:
+  std::size_t places_ = 0;
+  std::array<double, kSpacings> squares_{};
+  struct Tile {
+    std::size_t places;
+    std::array<double, kSpacings> squares;
+  };
+  void add_tile(const Grid<float>& block, int top, int left, Tile& tile);
+  std::vector<Tile> tiles_;
+  double guide_squares_ = 0, guide_products_ = 0;
+};
+
+}  // namespace sightbound

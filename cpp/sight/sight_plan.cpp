@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//   s      distance along the ground, metres
+//   rise   (height - eye) / s - bend s / 2R: the slope of a line of sight to there, over the curved ground
+#include "sight/sight_plan.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#include "sight/vector.h"
+
+namespace sightbound {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::uint32_t count(const auto& list) { return static_cast<std::uint32_t>(list.size()); }
+
+class Writer {
+ public:
+  Writer(const BoundedMarch& march, const RayFan& fan, const RealisedColumns& columns, const FineGround& fine,
+         const Refinement& refinement)
+      : march_(march),
+        fan_(fan),
+        columns_(columns),
+        fine_(fine),
+        refinement_(refinement),
+        stride_(std::bit_ceil(static_cast<unsigned>(march.widest() / 2 + 2))),
+        held_(6 * static_cast<std::size_t>(stride_), {kNowhere, kNowhere}),
+        places_(at(fan.rays()), fan.eye()) {
+    plan_.rays = fan.rays();
+    plan_.slots = 6 * stride_;
+  }
+
+  SightPlan write(const std::function<std::uint32_t(int row, int col)>& item_of) {
+    auto target = march_.targets().begin();
+    for (int line = 0; line < fan_.lines(); ++line) {
+      bool any = march_.any_may_decide(line);
+      for (; target != march_.targets().end() && target->line == line; ++target) {
+        if (target->open == 0) continue;
+        add(*target, item_of(target->row, target->col));
+        any = true;
+      }
+      if (!any) continue;
+      for (int i = 0; i < fan_.rays(); ++i) {
+        if (march_.may_decide(line, i)) add_crossing(line, i);
+      }
+      plan_.lines.push_back(
+          {count(plan_.samples), count(plan_.nodes), count(plan_.targets), count(plan_.crossings)});
+    }
+    return std::move(plan_);
+  }
+
+ private:
+  void add(const BoundedMarch::Target& target, std::uint32_t item) {
+    const double s = fan_.distance(target.ray, target.line), per_2r = fan_.per_2r(target.ray);
+    const RayPlace place{0.5 * fan_.major(target.line), static_cast<double>(target.minor), s};
+    const auto ray = static_cast<std::uint32_t>(target.ray);
+    plan_.targets.push_back({ray_slope(s, per_2r), node(target.line, 2 * target.minor), ray,
+                             add_fine(places_[ray], place, per_2r, refinement_.at_target), item, target.open,
+                             refinement_.at_target});
+  }
+
+  void add_crossing(int line, int i) {
+    const double minor = fan_.minor(i, line), per_2r = fan_.per_2r(i);
+    const int before = fan_.node_before(minor);
+    const RayPlace place = fan_.crossing(i, line, minor);
+    const Fineness fineness = refinement_.from_eye(line);
+    const double part = 2 * minor - before;
+    plan_.crossings.push_back({ray_slope(place.s, per_2r), static_cast<float>(part),
+                               fine_.across(place, part), node(line, before),
+                               node(line, fan_.node_behind(minor)), static_cast<std::uint32_t>(i),
+                               add_fine(places_[at(i)], place, per_2r, fineness), fineness});
+    places_[at(i)] = place;
+  }
+
+  std::uint32_t add_fine(const RayPlace& a, const RayPlace& b, double per_2r, Fineness fineness) {
+    const std::uint32_t first = count(plan_.fine);
+    FinePlaces places;
+    fine_.between(a, b, per_2r, fineness, places);
+    plan_.fine.insert(plan_.fine.end(), places, places + static_cast<int>(fineness));
+    return first;
+  }
+
+  // What a slot holds: half cells.
+  using Place = std::pair<int, int>;
+  bool takes(SightPlan::Slot slot, const Place& place) { return std::exchange(held_[slot], place) != place; }
+
+  // Samples of even and odd lines of samples have slots of their own, for a line of nodes lies between two;
+  // so have centres of squares, for it has two beside it.
+  SightPlan::Slot sample(int major, int minor) {
+    const SightPlan::Slot slot = (unsigned(major) % 2) * stride_ + unsigned(minor) % stride_;
+    if (takes(slot, {2 * major, 2 * minor})) plan_.samples.push_back({columns_.sample(major, minor), slot});
+    return slot;
+  }
+
+  SightPlan::Slot centre(int major, int minor) {
+    const unsigned line = unsigned((major + 1) / 2), place = unsigned((minor + 1) / 2);
+    const SightPlan::Slot slot = (2 + line % 2) * stride_ + place % stride_;
+    if (takes(slot, {major, minor})) plan_.samples.push_back({columns_.centre(major, minor), slot});
+    return slot;
+  }
+
+  SightPlan::Slot node(int line, int half_cells) {
+    const int major = fan_.grid_major(fan_.major(line)), minor = fan_.grid_minor(half_cells);
+    const int m = major / 2, n = minor / 2, m1 = (major + 1) / 2, n1 = (minor + 1) / 2;
+    SightPlan::Node made{columns_.node(major, minor), sample(m, n), 0, 0, 0, 0, 0, 0};
+    if (m == m1 && n == n1) return made.a;
+    made.b = sample(m1, n1);
+    if (made.draw.kind == NodeDraw::Kind::kCentre) {
+      made.b = sample(m, n1);
+      made.c = sample(m1, n);
+      made.d = sample(m1, n1);
+      made.e = centre(major, minor);
+    } else if (made.draw.kind == NodeDraw::Kind::kSide) {
+      const int i = m == m1 ? 1 : 0, j = 1 - i;  // to the centres on either side
+      made.e = centre(major - i, minor - j);
+      made.f = centre(major + i, minor + j);
+    }
+    made.slot = 4 * stride_ + unsigned(minor) % (2 * stride_);
+    if (takes(made.slot, {major, minor})) plan_.nodes.push_back(made);
+    return made.slot;
+  }
+
+  const BoundedMarch& march_;
+  const RayFan& fan_;
+  const RealisedColumns& columns_;
+  const FineGround& fine_;
+  const Refinement refinement_;
+  SightPlan plan_;
+  static constexpr int kNowhere = std::numeric_limits<int>::min();
+  const unsigned stride_;
+  std::vector<Place> held_;       // by the slots
+  std::vector<RayPlace> places_;  // of the rays
+};
+
+SIGHTBOUND_INLINE void raise(const Lanes& ground, const Lanes& eye, const RaySlope& slope, Lanes& horizon) {
+  for (int l = 0; l < kLanes; ++l) {
+    const float rise = (ground.v[l] - eye.v[l]) * slope.per_s - slope.drop;
+    // What is not known hides all behind it.
+    horizon.v[l] = larger(rise == rise ? rise : kInfinity, horizon.v[l]);
+  }
+}
+
+// By what lies between two places.
+SIGHTBOUND_INLINE void raise_between(const FinePlace* places, Fineness fineness, std::uint32_t first,
+                                     const Lanes& a, const Lanes& b, const Lanes& eye, Lanes& horizon) {
+  if (fineness == Fineness::kNone) return;
+  Lanes half, quarter;
+  draw_between(places[0].draw, first, a, b, half);
+  raise(half, eye, places[0].slope, horizon);
+  if (fineness == Fineness::kHalves) return;
+  draw_between(places[1].draw, first, a, half, quarter);
+  raise(quarter, eye, places[1].slope, horizon);
+  draw_between(places[2].draw, first, half, b, quarter);
+  raise(quarter, eye, places[2].slope, horizon);
+}
+
+SIGHTBOUND_INLINE std::uint16_t seen_over(const Lanes& horizon, const Lanes& ground, float height,
+                                          const Lanes& eye, const RaySlope& slope) {
+  std::uint32_t bits = 0;
+  for (int l = 0; l < kLanes; ++l) {
+    const float rise = (ground.v[l] + height - eye.v[l]) * slope.per_s - slope.drop;
+    bits |= rise >= horizon.v[l] ? 1u << l : 0u;
+  }
+  return static_cast<std::uint16_t>(bits);
+}
+
+struct Working {
+  Lanes *slots, *horizons, *places;
+};
+
+SIGHTBOUND_VECTOR
+void carry_out(const SightPlan& plan, const Lanes& eye, const float* heights, std::uint32_t first,
+               const Working& work, const SeenBits& seen) {
+  SightPlan::Line from{0, 0, 0, 0};
+  for (const SightPlan::Line& to : plan.lines) {
+    for (; from.samples < to.samples; ++from.samples) {
+      const SightPlan::Sample& sample = plan.samples[from.samples];
+      draw(sample.draw, first, work.slots[sample.slot]);
+    }
+    for (; from.nodes < to.nodes; ++from.nodes) {
+      const SightPlan::Node& node = plan.nodes[from.nodes];
+      const Lanes* of = work.slots;
+      draw(node.draw, first, {of[node.a], of[node.b], of[node.c], of[node.d], of[node.e], of[node.f]},
+           work.slots[node.slot]);
+    }
+    for (; from.targets < to.targets; ++from.targets) {
+      const SightPlan::Target& target = plan.targets[from.targets];
+      const Lanes &ground = work.slots[target.ground], &before = work.horizons[target.ray];
+      float highest = -kInfinity;
+      for (unsigned layers = target.layers; layers != 0; layers &= layers - 1)
+        highest = larger(heights[std::countr_zero(layers)], highest);
+      if (seen_over(before, ground, highest, eye, target.slope) == 0) continue;
+      Lanes horizon = before;
+      raise_between(plan.fine.data() + target.fine, target.fineness, first, work.places[target.ray], ground,
+                    eye, horizon);
+      for (unsigned layers = target.layers; layers != 0; layers &= layers - 1) {
+        const int l = std::countr_zero(layers);
+        std::uint16_t& bits = seen.bits[(target.item + static_cast<std::size_t>(l)) * seen.stride];
+        bits = static_cast<std::uint16_t>(bits | seen_over(horizon, ground, heights[l], eye, target.slope));
+      }
+    }
+    for (; from.crossings < to.crossings; ++from.crossings) {
+      const SightPlan::Crossing& crossing = plan.crossings[from.crossings];
+      const Lanes &a = work.slots[crossing.a], &b = work.slots[crossing.b];
+      Lanes ground, &horizon = work.horizons[crossing.ray], &place = work.places[crossing.ray];
+      const auto between = [&](int l) { return a.v[l] + crossing.part * (b.v[l] - a.v[l]); };
+      draw_about(crossing.across, first, between, ground);
+      raise_between(plan.fine.data() + crossing.fine, crossing.fineness, first, place, ground, eye, horizon);
+      raise(ground, eye, crossing.slope, horizon);
+      place = ground;
+    }
+  }
+}
+
+}  // namespace
+
+SightPlan write_plan(const BoundedMarch& march, const RayFan& fan, const RealisedColumns& columns,
+                     const FineGround& fine, const Refinement& refinement,
+                     const std::function<std::uint32_t(int row, int col)>& item_of) {
+  return Writer(march, fan, columns, fine, refinement).write(item_of);
+}
+
+void PlanRunner::run(const SightPlan& plan, const SixteenEyes& eyes, const std::vector<float>& heights,
+                     std::uint32_t first, const SeenBits& seen) {
+  Lanes low;
+  std::fill_n(low.v, kLanes, -kInfinity);
+  slots_.resize(plan.slots);
+  horizons_.assign(at(plan.rays), low);
+  places_.assign(at(plan.rays), eyes.ground);
+  carry_out(plan, eyes.eye, heights.data(), first, {slots_.data(), horizons_.data(), places_.data()}, seen);
+}
+
+}  // namespace sightbound

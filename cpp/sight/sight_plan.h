@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All that has to be drawn and compared on the way of a block of rays, written down once and carried out for
+// sixteen realisations at a time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sight/bounded_march.h"
+
+namespace sightbound {
+
+// Heights that are known of a line stand in slots; a later line takes them over.
+struct SightPlan {
+  using Slot = std::uint32_t;
+  struct Sample {
+    SampleDraw draw;
+    Slot slot;
+  };
+  struct Node {
+    NodeDraw draw;
+    Slot a, b, c, d, e, f;  // its parents, in the order of NodeParents
+    Slot slot;
+  };
+  // A ray goes on to the next place.
+  struct Crossing {
+    RaySlope slope;
+    float part;  // of the way from a to b
+    Departure across;
+    Slot a, b;
+    std::uint32_t ray, fine;  // first of the places between the last crossing and this
+    Fineness fineness;
+  };
+  struct Target {
+    RaySlope slope;
+    Slot ground;
+    std::uint32_t ray, fine, item;  // where the answer goes
+    Layers layers;
+    Fineness fineness;
+  };
+  // Ends of what belongs to a line; it is carried out in this order.
+  struct Line {
+    std::uint32_t samples, nodes, targets, crossings;
+  };
+
+  std::vector<Line> lines;
+  std::vector<Sample> samples;
+  std::vector<Node> nodes;
+  std::vector<Target> targets;
+  std::vector<Crossing> crossings;
+  std::vector<FinePlace> fine;
+  int rays = 0;
+  Slot slots = 0;
+};
+
+// `item_of`: where the answer about a cell goes.
+SightPlan write_plan(const BoundedMarch&, const RayFan&, const RealisedColumns&, const FineGround&,
+                     const Refinement&, const std::function<std::uint32_t(int row, int col)>& item_of);
+
+// What sixteen eyes stand on and are.
+struct SixteenEyes {
+  Lanes ground, eye;  // absolute heights
+};
+
+// Bit l of seen[(item + layer) stride]: seen in realisation first + l. Bits are added to those that are
+// there.
+struct SeenBits {
+  std::uint16_t* bits;
+  std::size_t stride;
+};
+class PlanRunner {
+ public:
+  void run(const SightPlan&, const SixteenEyes&, const std::vector<float>& heights, std::uint32_t first,
+           const SeenBits&);
+
+ private:
+  std::vector<Lanes> slots_, horizons_, places_;  // of lines; of rays; of rays
+};
+
+}  // namespace sightbound

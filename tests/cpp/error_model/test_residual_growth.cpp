@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "error_model/residual_growth.h"
+#include "error_model/self_check.h"
+#include "support/terrains.h"
+
+namespace sightbound {
+namespace {
+
+using testing::grid_from;
+using testing::hills;
+using testing::noise;
+
+// Of every `k`-th place, or means over k x k.
+Grid<float> coarse(int side, int k, bool means) {
+  return grid_from(side, side, [=](int r, int c) {
+    if (!means) return hills(k * r, k * c, 0.8, 10);
+    double sum = 0;
+    for (int i = 0; i < k; ++i) {
+      for (int j = 0; j < k; ++j) sum += hills(k * r + i, k * c + j, 0.8, 10);
+    }
+    return sum / (k * k);
+  });
+}
+
+TEST(ResidualGrowth, TellsMeansFromSamples) {
+  ResidualGrowth samples, means;
+  samples.add(coarse(256, 4, false));
+  means.add(coarse(256, 4, true));
+  EXPECT_GT(means.means_score(), samples.means_score() + 0.4);
+  EXPECT_GT(means.exponent(0), samples.exponent(0) + 0.1);
+}
+
+TEST(ResidualGrowth, OneCliffDoesNotSpeakForThePlain) {
+  const auto plain = [](int r, int c) { return hills(r, c, 0.9, 8); };
+  ResidualGrowth without, with;
+  without.add(grid_from(256, 256, plain));
+  with.add(grid_from(256, 256, [&](int r, int c) { return plain(r, c) + (c < 70 ? 400 : 0); }));
+  EXPECT_NEAR(with.exponent(0), without.exponent(0), 0.15);  // one tile of eight has it
+  EXPECT_GT(with.rms(0), 10 * without.rms(0));
+}
+
+TEST(ResidualGrowth, ACubicHasTheGainOfOne) {
+  ResidualGrowth growth;
+  growth.add(grid_from(64, 64, [](int r, int c) { return 0.001 * r * r * r + 0.02 * c * c; }));
+  EXPECT_NEAR(growth.ridge_gain(), 0.125, 1e-3);
+}
+
+TEST(SelfCheck, OfGaussianGroundIsNormalAndHolds) {
+  Progress progress;
+  const Grid<float> z = grid_from(256, 256, [](int r, int c) { return hills(r, c, 0.8, 9); });
+  ResidualGrowth growth;
+  growth.add(z);
+  SelfCheck check(growth.exponent(1), growth.rms(0));
+  check.add(z, progress);
+  EXPECT_GT(check.places(), 10000u);
+  EXPECT_NEAR(check.scale(), 1, 0.2);
+  EXPECT_LT(check.quantile(0.5), check.quantile(0.95));
+}
+
+TEST(SelfCheck, FindsHeavyTails) {
+  // Level ground with a sudden rise here and there.
+  Progress progress;
+  const Grid<float> z = grid_from(256, 256, [](int r, int c) {
+    return 0.05 * noise(r, c, 1) + (noise(r, c, 2) < 0.01 ? 5 * noise(r, c, 3) : 0);
+  });
+  SelfCheck check(0.5, 1);
+  check.add(z, progress);
+  EXPECT_NE(check.tails(), Tails::kNormal);
+}
+
+}  // namespace
+}  // namespace sightbound
