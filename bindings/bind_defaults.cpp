@@ -11,6 +11,7 @@
 #include "error_model/error_model.h"
 #include "error_model/products.h"
 #include "jobs/error_surfaces_job.h"
+#include "jobs/line_of_sight_job.h"
 #include "jobs/option_names.h"
 #include "jobs/probable_viewshed_job.h"
 #include "jobs/volume_viewshed_job.h"
@@ -37,6 +38,8 @@ py::dict defaults() {
   const ErrorModel model;
   const VolumeSightOptions sight;
   const ProbableOptions probable;
+  const WholeLineOptions whole_line;
+  const RadioOptions radio;
   return py::dict(
       "observer_height"_a = observer.height, "target_height"_a = observer.target_height,
       "min_distance"_a = observer.min_distance, "max_distance"_a = finite_or_none(observer.max_distance),
@@ -53,7 +56,8 @@ py::dict defaults() {
       "target_ceiling"_a = sight.targets.ceiling_m, "seen_from"_a = name_of(sight.seen_from),
       "holds_for"_a = name_of(sight.holds_for), "most_lines"_a = sight.most_lines,
       "realisations"_a = probable.realisations, "precision"_a = probable.precision,
-      "method"_a = name_of(probable.method), "refinement"_a = probable.refinement, "seed"_a = probable.seed);
+      "method"_a = name_of(probable.method), "refinement"_a = probable.refinement, "seed"_a = probable.seed,
+      "probability_stand"_a = name_of(whole_line.stand), "fresnel_share"_a = radio.zone_share);
 }
 
 }  // namespace

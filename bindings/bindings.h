@@ -19,6 +19,7 @@ void bind_error_model(py::module_& m);
 void bind_error_check(py::module_& m);
 void bind_viewshed(py::module_& m);
 void bind_line_of_sight(py::module_& m);
+void bind_intervisibility(py::module_& m);
 void bind_probable(py::module_& m);
 void bind_error_surfaces(py::module_& m);
 void bind_tin(py::module_& m);

@@ -22,6 +22,7 @@ PYBIND11_MODULE(_core, m) {
   python::bind_error_check(m);
   python::bind_viewshed(m);
   python::bind_line_of_sight(m);
+  python::bind_intervisibility(m);
   python::bind_probable(m);
   python::bind_error_surfaces(m);
   python::bind_tin(m);

@@ -13,7 +13,9 @@ from qgis.core import (
 )
 
 from .errors import bad_input
+from .feedback import until_cancelled
 from .fields import integer_field, number_field, text_field
+from .line_extras import extra_columns, extra_values
 from .styling import style_when_loaded
 from .text import tr
 
@@ -33,34 +35,37 @@ _NAME_FIELDS = (
 )
 
 
-def write_lines(algorithm, lines, dem, parameters, context):
+def write_lines(algorithm, lines, dem, parameters, context, extras, feedback):
     numbers = ("p", "k", "distance", "azimuth", "critical_distance", "required_height")
-    fields = _fields(*_NAME_FIELDS, (text_field, "verdict"), *((number_field, name) for name in numbers))
-    rows = (
-        (
-            _line(line, dem),
-            _names_of(line) + [line.verdict] + [_finite(getattr(line.sight, name)) for name in numbers],
-        )
-        for line in lines
-    )
-    return _write(algorithm, "OUTPUT", QgsWkbTypes.Type.LineString, fields, rows, dem, parameters, context)
+    more = extra_columns(extras)
+    fields = fields_of(*_NAME_FIELDS, (text_field, "verdict"), *((number_field, name) for name in numbers + more))
+
+    def attributes(line):
+        told = extra_values(line.sight)
+        figures = [getattr(line.sight, name) for name in numbers] + [told[name] for name in more]
+        return [*_names_of(line), line.verdict, *map(finite, figures)]
+
+    rows = ((_line(line, dem), attributes(line)) for line in until_cancelled(lines, feedback))
+    kind = QgsWkbTypes.Type.LineString
+    return write_features(algorithm, "OUTPUT", kind, fields, rows, dem, parameters, context, "lines")
 
 
 def write_critical_places(algorithm, lines, dem, parameters, context):
     """The place that decides each line; lines too short to have one are left out."""
     numbers = ("p", "k", "critical_distance", "ground", "sigma", "line_height")
-    fields = _fields(*_NAME_FIELDS, (text_field, "verdict"), *((number_field, name) for name in numbers))
+    fields = fields_of(*_NAME_FIELDS, (text_field, "verdict"), *((number_field, name) for name in numbers))
     rows = []
     for line in lines:
         sight = line.sight
         if not math.isfinite(sight.critical_distance):
             continue
         at = critical_index(sight)
-        heights = [_finite(sight.profile[name][at]) for name in ("ground", "sigma", "line")]
+        heights = [finite(sight.profile[name][at]) for name in ("ground", "sigma", "line")]
         attributes = _names_of(line) + [line.verdict, sight.p, sight.k, sight.critical_distance] + heights
         rows.append((QgsGeometry.fromPointXY(QgsPointXY(*sight.critical)), attributes))
-    return _write(
-        algorithm, "OUTPUT_CRITICAL", QgsWkbTypes.Type.Point, fields, rows, dem, parameters, context
+    kind = QgsWkbTypes.Type.Point
+    return write_features(
+        algorithm, "OUTPUT_CRITICAL", kind, fields, rows, dem, parameters, context, "critical"
     )
 
 
@@ -78,27 +83,30 @@ def _line(line, dem):
     return QgsGeometry.fromPolylineXY([ends[0], *inner, ends[1]]).simplify(_STRAIGHT * dem.cell)
 
 
-def _finite(value):
+def finite(value):
     """NULL for what the core leaves open (NaN)."""
     return float(value) if math.isfinite(value) else None
 
 
-def _fields(*makers):
+def fields_of(*makers):
     fields = QgsFields()
     for make, name in makers:
         fields.append(make(name))
     return fields
 
 
-def _write(algorithm, output, kind, fields, rows, dem, parameters, context):
+def write_features(algorithm, output, kind, fields, rows, dem, parameters, context, style):
+    """Writes rows of (geometry, attributes) to the sink `output`; no style for ''."""
     sink, target = algorithm.parameterAsSink(parameters, output, context, fields, kind, dem.crs)
     if sink is None:
         raise bad_input(output, tr("the layer cannot be written."))
     for geometry, attributes in rows:
         feature = QgsFeature(fields)
-        feature.setGeometry(geometry)
+        if geometry is not None:
+            feature.setGeometry(geometry)
         feature.setAttributes(attributes)
         if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
             raise bad_input(output, tr("a feature cannot be written."))
-    style_when_loaded(context, target, "lines" if output == "OUTPUT" else "critical")
+    if style:
+        style_when_loaded(context, target, style)
     return target

@@ -53,10 +53,13 @@ def read_observers(algorithm, parameters, context, feedback, dem):
     return [place], None
 
 
-def read_points(algorithm, parameters, name, context, feedback, dem, varying, fields, name_field):
+def read_points(
+    algorithm, parameters, name, context, feedback, dem, varying, fields, name_field, outside=False
+):
     """The points of the layer `name` in the CRS of the DEM. Raises Stopped when cancelled.
 
     `varying` are the parameters to evaluate for each; `fields` names the field parameter that may stand in for one.
+    With `outside` points may lie outside the DEM.
     """
     source = algorithm.parameterAsSource(parameters, name, context)
     if source is None:
@@ -84,7 +87,8 @@ def read_points(algorithm, parameters, name, context, feedback, dem, varying, fi
             x, y = _moved(point, to_dem, name, label)
             title = feature.id() if is_null(title) else title
             place = Place(label, str(title), x, y, feature, QgsGeometry.fromPointXY(point), dict(evaluated))
-            _check(place, name, dem)
+            if not outside:
+                _check(place, name, dem)
             places.append(place)
     if not places:
         raise bad_input(name, tr("the layer holds no points; add some, or clear the selection."))

@@ -2,8 +2,8 @@
 """Sight lines as drawings: one HTML page with an inline SVG for each profile.
 
 A drawing shows the terrain, the band in which it lies at the confidence asked for, the line of sight (which sags with
-the Earth's curve, so that terrain keeps its heights), and the critical place, whose surroundings are drawn once more
-beside it.
+the Earth's curve, so that terrain keeps its heights) with the first Fresnel zone of a radio link, and the critical place,
+whose surroundings are drawn once more beside it.
 """
 
 import html
@@ -57,17 +57,34 @@ def _section(line, z):
         facts.append(
             tr("surely visible from {:.1f} m above the target's ground").format(sight.required_height)
         )
+    facts += _extra_facts(sight)
     return f"<h2>{title}</h2><p>{' · '.join(facts)}</p>{_drawing(line, z)}"
+
+
+def _extra_facts(sight):
+    facts, whole, zone = [], sight.whole_line, sight.fresnel
+    if whole is not None:
+        clear = tr("the whole line is clear with P = {:.3f} ± {:.3f}, blocked with {:.2g} at most")
+        facts.append(clear.format(whole.probability, whole.standard_error, whole.blocked_bound))
+    if whole is not None and math.isfinite(whole.blocked_distance):
+        most = tr("most often at {:.0f} m, in {:.1%} of the terrains drawn")
+        facts.append(most.format(whole.blocked_distance, whole.blocked_share))
+    if zone is not None and math.isfinite(zone.clear):
+        worst = tr("least clearance {:.0%} of the first Fresnel zone ({:.1f} m) at {:.0f} m, p = {:.3f} for its share")
+        facts.append(worst.format(zone.clear, zone.worst_radius, zone.worst_distance, zone.p))
+    if whole is not None and math.isfinite(whole.fresnel_probability):
+        facts.append(tr("that share is clear with P = {:.3f}").format(whole.fresnel_probability))
+    return facts
 
 
 def _drawing(line, z):
     """The whole profile, and beside it the surroundings of the critical place, where the band can be seen."""
     profile = line.sight.profile
+    columns = [profile[name] for name in ("distance", "ground", "sigma", "line")]
+    columns.append(profile.get("fresnel", [0.0] * len(columns[0])))
     places = [
-        _Place(float(distance), float(ground), z * float(sigma), float(sight))
-        for distance, ground, sigma, sight in zip(
-            profile["distance"], profile["ground"], profile["sigma"], profile["line"]
-        )
+        _Place(float(distance), float(ground), z * float(sigma), float(sight), float(zone))
+        for distance, ground, sigma, sight, zone in zip(*columns)
     ]
     if not any(math.isfinite(place.ground) for place in places):
         return f"<p>{tr('Nothing is known between the two ends.')}</p>"
@@ -84,6 +101,7 @@ class _Place(NamedTuple):
     ground: float  # NaN where unknown
     band: float  # half its width
     sight: float
+    zone: float  # radius of the first Fresnel zone; 0 without radio
 
 
 def _around(places, critical):
@@ -99,8 +117,8 @@ def _around(places, critical):
 
 def _part(places, critical, edges, verdict):
     known = [place for place in places if math.isfinite(place.ground)] or places
-    low = min(min(place.ground - place.band, place.sight) for place in known)
-    high = max(max(place.ground + place.band, place.sight) for place in known)
+    low = min(min(place.ground - place.band, place.sight - place.zone) for place in known)
+    high = max(max(place.ground + place.band, place.sight + place.zone) for place in known)
     margin = 0.06 * max(high - low, 1.0)
     frame = _Frame(edges, places[0].distance, places[-1].distance, low - margin, high + margin)
     parts = [frame.axes()]
@@ -113,7 +131,12 @@ def _part(places, critical, edges, verdict):
         parts.append(_shape("polygon", "terrain", ground + bottom))
         parts.append(_shape("polygon", "band", upper + lower[::-1]))
         parts.append(_shape("polyline", "ground", ground))
-    sight = [frame.at(place.distance, place.sight) for place in _thinned(places, frame)]
+    along = _thinned(places, frame)
+    if any(place.zone for place in along):
+        above = [frame.at(place.distance, place.sight + place.zone) for place in along]
+        below = [frame.at(place.distance, place.sight - place.zone) for place in along]
+        parts.append(_shape("polygon", "zone", above + below[::-1]))
+    sight = [frame.at(place.distance, place.sight) for place in along]
     parts.append(_shape("polyline", f"sight {verdict}", sight))
     if critical is not None:
         place = places[critical]

@@ -12,6 +12,7 @@ from .algorithms.confidence_viewshed import ConfidenceViewshed
 from .algorithms.dem_to_tin import DemToTin
 from .algorithms.error_surfaces import ErrorSurfaces
 from .algorithms.estimate_error import EstimateError
+from .algorithms.intervisibility import IntervisibilityNetwork
 from .algorithms.line_of_sight_profile import LineOfSightProfile
 from .algorithms.probable_viewshed import ProbableViewshed
 from .algorithms.simplify_tin import SimplifyTin
@@ -28,6 +29,7 @@ _ALGORITHMS = (
     ErrorSurfaces,
     EstimateError,
     LineOfSightProfile,
+    IntervisibilityNetwork,
     BuildErrorVolume,
     VolumeViewshed,
     VolumeTargets,

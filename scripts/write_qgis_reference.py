@@ -24,7 +24,7 @@ texts are the help in QGIS. Parameters marked *dynamic* take a number, a field o
 def reference(provider):
     """The whole page."""
     names = (
-        "confidenceviewshed", "probableviewshed", "errorsurfaces", "estimateerror", "lineofsightprofile",
+        "confidenceviewshed", "probableviewshed", "errorsurfaces", "estimateerror", "lineofsightprofile", "intervisibility",
         "builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster",
         "demtotin",
         "simplifytin",

@@ -18,7 +18,8 @@ from .error_estimate import ErrorMaps, error_maps, estimate_error, write_correct
 from .error_model import ErrorModel, product_error, products, terrain_table, two_sided_quantile
 from .error_surfaces import ErrorSurfaces, error_surfaces
 from .hidden_volume import HiddenRasters, HiddenVolume
-from .line_of_sight import LineOfSight, line_of_sight, lines_of_sight
+from .intervisibility import Intervisibility, intervisibility
+from .line_of_sight import Fresnel, LineOfSight, WholeLine, line_of_sight, lines_of_sight
 from .probable_viewshed import ProbableViewshed, probable_viewshed
 from .simplify import SimplifiedTin, dem_to_tin, dem_to_tins, simplify
 from .tin import Tin, read_tin, tin_layers
@@ -48,8 +49,10 @@ __all__ = [
     "ErrorModel",
     "ErrorSurfaces",
     "ErrorVolume",
+    "Fresnel",
     "HiddenRasters",
     "HiddenVolume",
+    "Intervisibility",
     "LineOfSight",
     "ProbableViewshed",
     "SimplifiedTin",
@@ -59,6 +62,7 @@ __all__ = [
     "Verification",
     "ViewshedResult",
     "VolumeLayer",
+    "WholeLine",
     "defaults",
     "dem_to_tin",
     "dem_to_tins",
@@ -67,6 +71,7 @@ __all__ = [
     "estimate_error",
     "estimate_volume_viewshed",
     "gdal_version",
+    "intervisibility",
     "line_of_sight",
     "lines_of_sight",
     "probable_viewshed",

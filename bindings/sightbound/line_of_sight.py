@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections import namedtuple
+
 from . import _arguments as arguments
 from ._loading import core
 from .dem import Dem, core_dem
@@ -17,6 +19,44 @@ if TYPE_CHECKING:
 
 _DEFAULTS = core.defaults()
 _LIMITS = ("min_distance", "max_distance", "azimuth", "vertical_angle")
+
+
+class WholeLine(
+    namedtuple(
+        "WholeLine",
+        "probability standard_error interval verdict blocked_bound blocked_at blocked_distance blocked_share "
+        "fresnel_probability realisations seed places",
+    )
+):
+    """The probability that a whole line is clear, over terrains that could lie behind the DEM.
+
+    probability: share of the realisations in which the line is nowhere below the ground.
+    standard_error: of that, one standard deviation.
+    interval: (low, high), of 95 % for the probability (Wilson 1927).
+    verdict: 0 hidden, 1 uncertain, 2 visible; a claim needs the nearer end of the interval to hold.
+    blocked_bound: the probability of being blocked is no larger, however many terrains were drawn.
+    blocked_at: (x, y) of the place where most realisations block the line; nan where none does.
+    blocked_distance: of it from the observer, metres.
+    blocked_share: of the realisations that block the line there.
+    fresnel_probability: that fresnel_share of the first Fresnel zone is clear too; nan without a frequency.
+    realisations, seed: what was drawn.
+    places: arrays distance, x, y and blocked (share of the realisations that block the line there).
+    """
+
+    __slots__ = ()
+
+
+class Fresnel(namedtuple("Fresnel", "clear worst worst_distance worst_radius middle_radius k p verdict")):
+    """The first Fresnel zone of a radio link, of radius sqrt(wavelength d1 d2 / D).
+
+    clear: least clearance of the DEM in radii of the zone; 0.6 is nearly as good as free space.
+    worst, worst_distance, worst_radius: (x, y) of the place with it, metres from the observer, the zone's radius there.
+    middle_radius: half-way, metres.
+    k, p, verdict: as of LineOfSight, for a line lowered by fresnel_share of the radius: the pointwise confidence that this
+        share of the zone is clear.
+    """
+
+    __slots__ = ()
 
 
 class LineOfSight:
@@ -78,9 +118,32 @@ class LineOfSight:
 
         distance (metres from the observer), x, y (the DEM's CRS), ground (height of the terrain, metres, nan unknown),
         sigma (metres), line (height of the line of sight over the same datum, Earth's curve and refraction included),
-        clearance ((line - ground) / sigma).
+        clearance ((line - ground) / sigma); with a frequency also fresnel (radius of the first Fresnel zone, metres).
         """
         return self._core.profile()
+
+    @property
+    def critical_clearance(self) -> float:
+        """Height of the line above the ground at the critical place, metres; negative below it."""
+        return self._core.critical_clearance
+
+    @property
+    def whole_line(self) -> WholeLine | None:
+        """What terrains drawn behind the DEM say of the whole line; None unless probability=True."""
+        found = self._core.whole_line()
+        return None if found is None else WholeLine(**found)
+
+    @property
+    def probability(self) -> float | None:
+        """That the whole line is clear; None unless probability=True."""
+        found = self._core.whole_line()
+        return None if found is None else found["probability"]
+
+    @property
+    def fresnel(self) -> Fresnel | None:
+        """Clearance of the first Fresnel zone; None without a frequency."""
+        found = self._core.fresnel()
+        return None if found is None else Fresnel(**found)
 
     @property
     def report(self) -> dict[str, Any]:
@@ -114,11 +177,28 @@ def line_of_sight(
     ground: Dem | Path | None = None,
     see_across_nodata: bool = _DEFAULTS["see_across_nodata"],
     progress: Progress | None = None,
+    probability: bool = False,
+    realisations: int = _DEFAULTS["realisations"],
+    seed: int = _DEFAULTS["seed"],
+    probability_stand: str = _DEFAULTS["probability_stand"],
+    frequency: float | None = None,
+    fresnel_share: float = _DEFAULTS["fresnel_share"],
 ) -> LineOfSight:
     """Judges the line from `observer` to `target`, both (x, y) in the DEM's CRS.
 
     The target need not be a cell's centre; at one, the answer is that of viewshed(). The other arguments, and what is
     raised, are those of viewshed().
+
+    Args:
+        probability: also draw terrains that could lie behind the DEM, those of probable_viewshed(), and count in how many the
+            whole line is clear: LineOfSight.whole_line.
+        realisations: terrains drawn, 1 to 65535.
+        seed: 0 or more; another one draws other terrains.
+        probability_stand: "ground": in each of them both ends stand on its ground; "model": they are at the heights that the
+            DEM gives. Absolute heights never move.
+        frequency: of a radio link, MHz (1 to 1,000,000): LineOfSight.fresnel. Radio is usually planned with refraction=0.25
+            (4/3 of the Earth's radius); the default, 0.13, is that of light.
+        fresnel_share: of the first Fresnel zone's radius that is to be clear.
     """
     given = locals()
     given["observers"] = [arguments.pair("observer", observer)]
@@ -141,6 +221,12 @@ def lines_of_sight(
     ground: Dem | Path | None = None,
     see_across_nodata: bool = _DEFAULTS["see_across_nodata"],
     progress: Progress | None = None,
+    probability: bool = False,
+    realisations: int = _DEFAULTS["realisations"],
+    seed: int = _DEFAULTS["seed"],
+    probability_stand: str = _DEFAULTS["probability_stand"],
+    frequency: float | None = None,
+    fresnel_share: float = _DEFAULTS["fresnel_share"],
 ) -> list[LineOfSight]:
     """Judges many lines, the i-th from observers[i] to targets[i]: line_of_sight() for each, the error estimated once.
 
@@ -157,5 +243,21 @@ def _judge(given: dict[str, Any]) -> list[LineOfSight]:
     if len(observers) != len(targets):
         counts = f"observers has {len(observers)} places, targets has {len(targets)}"
         raise ValueError(f"{counts}; a line needs one of each.")
-    lines = core.lines_of_sight(source, observers, targets, model, options_of(dem, given), given["progress"])
+    options, extras = options_of(dem, given), extras_of(given)
+    lines = core.lines_of_sight(source, observers, targets, model, options, extras, given["progress"])
     return [LineOfSight(line) for line in lines]
+
+
+def extras_of(given: dict[str, Any]) -> core.LineExtras:
+    """What is asked beside p."""
+    extras = core.LineExtras()
+    if given["probability"]:
+        extras.set_whole_line(
+            arguments.whole("realisations", given["realisations"], 1, 65535),
+            arguments.whole("seed", given["seed"], 0, 2**63 - 1),
+            arguments.word("probability_stand", given["probability_stand"]),
+        )
+    if given["frequency"] is not None:
+        share = arguments.number("fresnel_share", given["fresnel_share"])
+        extras.set_radio(arguments.number("frequency", given["frequency"]), share)
+    return extras

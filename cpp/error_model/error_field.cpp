@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace sightbound {
 
@@ -17,7 +18,10 @@ double GrowthProfile::operator()(double d, double amplitude) const {
     case GeologicShape::kGrowth: {
       // Along a line held at both ends: f^2H + (1-f)^2H - ... falls back to f (1 - f) for H of 1 and more.
       const double t = d / half_spacing_m, h = std::min(exponent, 1.0);
-      return t < 1 ? std::pow(t * (2 - t), h) : std::pow(t, h / 2);
+      if (t < 1) return std::pow(t * (2 - t), h);
+      // Beside the line, as far as the middle of a square of samples; beyond, samples are sparser.
+      const double beside = std::min(t, std::numbers::sqrt2);
+      return std::pow(beside, h / 2) * std::pow(t / beside, exponent);
     }
   }
   return 0;

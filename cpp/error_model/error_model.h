@@ -37,7 +37,7 @@ using Quantity = std::variant<FromDem, double, RasterFile, SharedGrid>;
 enum class GeologicShape {
   kGaussian,  // P = exp(-f d^2 / 2), f = Delta^2, or 1 / range^2 when a range is given
   kStep,      // P = 1 below the range, else 0
-  kGrowth,    // L the larger cell side, t = 2 d / L: 1 - P = (t (2 - t))^min(H, 1), t >= 1: t^(min(H, 1) / 2)
+  kGrowth,    // L the larger cell side, t = 2 d / L: 1 - P = (t (2 - t))^min(H, 1); t >= 1: error_field.cpp
 };
 std::string name_of(GeologicShape shape);                    // "gaussian", "step", "growth"
 GeologicShape geologic_shape_from(const std::string& name);  // throws InvalidInput

@@ -3,31 +3,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <utility>
 
 #include "base/error.h"
 #include "base/memory_budget.h"
+#include "base/number_text.h"
 #include "io/crs.h"
+#include "jobs/line_judge.h"
 #include "jobs/loaded_terrain.h"
 #include "jobs/observer_place.h"
-#include "sight/confidence.h"
-#include "sight/sight_line.h"
+#include "jobs/observer_posts.h"
 
 namespace sightbound {
 
 namespace {
 
+constexpr int kMostRealisations = 65535;
+constexpr double kLowest_mhz = 1, kHighest_mhz = 1e6;  // longer waves bend round hills; light has no zone
+
 struct Pair {
   std::string observer_name, target_name;
-  GridPlace observer, target;
+  LineEnd observer, target;
   Window lines;  // whole raster
   ObserverFrame frame;
 };
 
 Pair place_pair(const DemSource& source, const Georeference& georeference, const Observer& o,
-                const LineOfSightTarget& t, std::size_t index) {
+                const LineOfSightTarget& t, std::size_t index, const LineExtras& extras) {
   const std::string name = name_of(o, index), target_name = "Target " + std::to_string(index + 1);
   validate(o, name);
   if (!std::isfinite(t.x) || !std::isfinite(t.y))
@@ -39,103 +41,101 @@ Pair place_pair(const DemSource& source, const Georeference& georeference, const
       intersection({ends.col - 2, ends.row - 2, ends.cols + 4, ends.rows + 4}, source.window());
   ObserverFrame frame = frame_of(georeference, from, reach);
   const Window lines = lines_window(source, frame, from, intersection(ends, source.window()));
-  return {name, target_name, from, to, lines, std::move(frame)};
+  return {name,
+          target_name,
+          {from, o.height},
+          {to, o.target_height},
+          window_for(lines, extras, source),
+          std::move(frame)};
 }
 
-double height_at(const Grid<float>& ground, const GridPlace& place, const Window& window,
-                 const std::string& name) {
-  const double height = interpolate(ground, place.whole_col() - window.col, place.whole_row() - window.row);
-  if (std::isnan(height))
-    throw InvalidInput(name +
-                       " stands where the DEM has no height (nodata). Move it, or fill the hole first.");
-  return height;
-}
+// Pairs over terrain in memory.
+class Judging {
+ public:
+  Judging(const DemSource& source, const Georeference& georeference, const ErrorModel& model,
+          const ViewshedOptions& options, const LineExtras& extras, std::vector<std::string>& warnings,
+          const Workers& workers, Progress& progress)
+      : source_(source),
+        georeference_(georeference),
+        model_(model),
+        options_(options),
+        extras_(extras),
+        warnings_(warnings),
+        workers_(workers),
+        progress_(progress) {}
 
-SightProfile profile_of(const SightLine& line, const DemSource& source, const GridPlace& base) {
-  std::vector<JudgedPlace> places;
-  line.for_each_place([&](const JudgedPlace& place) { places.push_back(place); });
-  std::sort(places.begin(), places.end(),
-            [](const JudgedPlace& a, const JudgedPlace& b) { return a.share < b.share; });
-  SightProfile profile;
-  for (const JudgedPlace& place : places) {
-    const Xy at = source.geotransform().of_sample(base.base_col + line.col(place.xi),
-                                                  base.base_row + line.row(place.xi));
-    profile.distance.push_back(place.share * line.distance());
-    profile.x.push_back(at.x);
-    profile.y.push_back(at.y);
-    profile.ground.push_back(place.ground);
-    profile.sigma.push_back(place.sigma);
-    profile.line.push_back(place.line);
-    profile.clearance.push_back((place.line - place.ground) / place.sigma);
+  std::vector<LineOfSight> together(const std::vector<Pair>& pairs, const Window& window) const {
+    const LoadedTerrain terrain(source_, georeference_, window, model_, options_, warnings_, workers_,
+                                progress_);
+    const LineJudge judge(source_, terrain, options_, extras_, workers_, progress_);
+    for (const Pair& pair : pairs) require_ground(judge, pair);
+    std::vector<LineOfSight> lines(pairs.size());
+    workers_.for_each(pairs.size(), [&](std::size_t i) {
+      lines[i] = judge.judge(pairs[i].observer, pairs[i].target, pairs[i].frame, nullptr, true);
+      progress_.advance(1);
+    });
+    return lines;
   }
-  return profile;
-}
 
-LineOfSight judge(const DemSource& source, const Observer& o, const Pair& pair, const LoadedTerrain& terrain,
-                  const ViewshedOptions& options) {
-  const Window& window = terrain.window();
-  const Scene& scene = terrain.scene();
-  const bool absolute = options.height_reference == HeightReference::kAbsolute;
-  const auto sampling = [&](const GridPlace& place) {
-    const SampleField& field = scene.error.sampling;
-    return field.is_constant()
-               ? static_cast<double>(field.constant())
-               : interpolate(field.values(), place.whole_col() - window.col, place.whole_row() - window.row);
-  };
-  LineOfSight out;
-  out.observer_ground = height_at(terrain.ground(), pair.observer, window, pair.observer_name);
-  out.target_ground = height_at(terrain.ground(), pair.target, window, pair.target_name);
-  height_at(scene.heights, pair.observer, window, pair.observer_name);
-  height_at(scene.heights, pair.target, window, pair.target_name);
-  out.eye_height = absolute ? o.height : out.observer_ground + o.height;
-  out.target_top = absolute ? o.target_height : out.target_ground + o.target_height;
+  std::vector<LineOfSight> one_by_one(const std::vector<Pair>& pairs) const {
+    std::vector<LineOfSight> lines;
+    for (const Pair& pair : pairs) {
+      const LoadedTerrain terrain(source_, georeference_, pair.lines, model_, options_, warnings_, workers_,
+                                  progress_);
+      const LineJudge judge(source_, terrain, options_, extras_, workers_, progress_);
+      require_ground(judge, pair);
+      lines.push_back(judge.judge(pair.observer, pair.target, pair.frame, nullptr, true));
+      progress_.advance(1);
+    }
+    return lines;
+  }
 
-  const Eye eye{&pair.frame, pair.observer.base_col - window.col, pair.observer.base_row - window.row,
-                out.eye_height, sampling(pair.observer)};
-  const Target target{pair.target.base_col - pair.observer.base_col + pair.target.col,
-                      pair.target.base_row - pair.observer.base_row + pair.target.row, out.target_top,
-                      sampling(pair.target)};
-  const SightLine line(scene, eye, target);
-  const Critical critical = line.settle();
-  out.k = critical.k;
-  out.p = static_cast<double>(probability(scene, critical.k));
-  out.verdict = verdict(scene, critical.k);
-  out.distance = line.distance();
-  out.azimuth = line.azimuth_deg();
-  out.profile = profile_of(line, source, pair.observer);
-
-  // The place that decides: where the clearance is least; unknown ground when that holds k* down.
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  out.critical_x = out.critical_y = out.critical_distance = kNan;
-  const SightProfile& p = out.profile;
-  std::optional<std::size_t> least, unknown;
-  for (std::size_t i = 0; i < p.clearance.size(); ++i) {
-    if (std::isnan(p.ground[i])) {
-      if (!unknown) unknown = i;
-    } else if (!least || p.clearance[i] < p.clearance[*least]) {
-      least = i;
+ private:
+  static void require_ground(const LineJudge& judge, const Pair& pair) {
+    for (const auto& [name, end] :
+         {std::pair{&pair.observer_name, &pair.observer}, {&pair.target_name, &pair.target}}) {
+      if (judge.has_ground(end->place)) continue;
+      throw InvalidInput(*name +
+                         " stands where the DEM has no height (nodata). Move it, or fill the hole first.");
     }
   }
-  const std::optional<std::size_t> decisive = critical.hole ? unknown : least;
-  if (decisive) {
-    out.critical_x = p.x[*decisive];
-    out.critical_y = p.y[*decisive];
-    out.critical_distance = p.distance[*decisive];
-  }
-  const double certain = line.needed_height(scene.quantile, out.target_ground),
-               likely = line.needed_height(0, out.target_ground);
-  out.required_height = std::isinf(certain) ? kNan : certain - out.target_ground;
-  out.likely_height = std::isinf(likely) ? kNan : likely - out.target_ground;
-  return out;
-}
+
+  const DemSource& source_;
+  const Georeference& georeference_;
+  const ErrorModel& model_;
+  const ViewshedOptions& options_;
+  const LineExtras& extras_;
+  std::vector<std::string>& warnings_;
+  const Workers& workers_;
+  Progress& progress_;
+};
 
 }  // namespace
+
+void validate(const LineExtras& extras) {
+  if (extras.whole_line &&
+      (extras.whole_line->realisations < 1 || extras.whole_line->realisations > kMostRealisations)) {
+    throw InvalidInput("realisations is " + std::to_string(extras.whole_line->realisations) + "; give 1 to " +
+                       std::to_string(kMostRealisations) + ".");
+  }
+  if (!extras.radio) return;
+  const double frequency = extras.radio->frequency_mhz, share = extras.radio->zone_share;
+  if (!(frequency >= kLowest_mhz && frequency <= kHighest_mhz)) {
+    throw InvalidInput("frequency is " + number_text(frequency) +
+                       "; it must be between 1 and 1000000 MHz (1 GHz is 1000).");
+  }
+  if (!(share >= 0 && share <= 1)) {
+    throw InvalidInput("fresnel_share is " + number_text(share) +
+                       "; it must be between 0 and 1 (usual: 0.6 of the zone's radius).");
+  }
+}
 
 std::vector<LineOfSight> run_lines_of_sight(const DemSource& source, const std::vector<Observer>& observers,
                                             const std::vector<LineOfSightTarget>& targets,
                                             const ErrorModel& model, const ViewshedOptions& options,
-                                            Progress& progress) {
+                                            const LineExtras& extras, Progress& progress) {
   validate(options);
+  validate(extras);
   model.validate();
   if (observers.size() != targets.size()) {
     throw InvalidInput("There are " + std::to_string(observers.size()) + " observers and " +
@@ -147,18 +147,21 @@ std::vector<LineOfSight> run_lines_of_sight(const DemSource& source, const std::
   const Georeference georeference = georeference_of(source);
   std::vector<std::string> warnings;
 
+  const auto bytes = [&](const Window& window) {
+    return LoadedTerrain::memory(window, model, options).peak + LineJudge::memory(window, extras);
+  };
   std::vector<Pair> pairs;
   Window all;
   std::size_t cells = 0, largest = 0;
   for (std::size_t i = 0; i < observers.size(); ++i) {
-    pairs.push_back(place_pair(source, georeference, observers[i], targets[i], i));
+    pairs.push_back(place_pair(source, georeference, observers[i], targets[i], i, extras));
     all = bounding(all, pairs.back().lines);
     cells += pairs.back().lines.cells();
-    largest = std::max(largest, LoadedTerrain::memory(pairs.back().lines, model, options).peak);
+    largest = std::max(largest, bytes(pairs.back().lines));
     progress.check();
   }
   constexpr std::size_t kWorthwhile = 4;  // lines that cross the same ground are read once
-  const std::size_t together_bytes = LoadedTerrain::memory(all, model, options).peak;
+  const std::size_t together_bytes = bytes(all);
   const bool together = all.cells() <= kWorthwhile * cells && together_bytes <= budget.bytes();
   budget.require(together ? together_bytes : largest, "The longest line of sight",
                  "Allow a larger memory_budget.");
@@ -166,21 +169,9 @@ std::vector<LineOfSight> run_lines_of_sight(const DemSource& source, const std::
   progress.begin(0.2, 1);
   const ErrorModel completed = complete_model(model, source, warnings, progress);
   progress.begin(0.78, static_cast<double>(std::max<std::size_t>(pairs.size(), 1)));
-  std::unique_ptr<LoadedTerrain> terrain;
-  if (together && !pairs.empty()) {
-    terrain = std::make_unique<LoadedTerrain>(source, georeference, all, completed, options, warnings,
-                                              workers, progress);
-  }
+  const Judging judging(source, georeference, completed, options, extras, warnings, workers, progress);
   std::vector<LineOfSight> lines;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!together) {
-      terrain.reset();
-      terrain = std::make_unique<LoadedTerrain>(source, georeference, pairs[i].lines, completed, options,
-                                                warnings, workers, progress);
-    }
-    lines.push_back(judge(source, observers[i], pairs[i], *terrain, options));
-    progress.advance(1);
-  }
+  if (!pairs.empty()) lines = together ? judging.together(pairs, all) : judging.one_by_one(pairs);
   const std::vector<std::string> notes = source.notes();  // reading adds to them
   warnings.insert(warnings.begin(), notes.begin(), notes.end());
   for (LineOfSight& line : lines) {
@@ -193,8 +184,9 @@ std::vector<LineOfSight> run_lines_of_sight(const DemSource& source, const std::
 
 LineOfSight run_line_of_sight(const DemSource& source, const Observer& observer,
                               const LineOfSightTarget& target, const ErrorModel& model,
-                              const ViewshedOptions& options, Progress& progress) {
-  return std::move(run_lines_of_sight(source, {observer}, {target}, model, options, progress).front());
+                              const ViewshedOptions& options, const LineExtras& extras, Progress& progress) {
+  return std::move(
+      run_lines_of_sight(source, {observer}, {target}, model, options, extras, progress).front());
 }
 
 }  // namespace sightbound

@@ -67,12 +67,16 @@ void validate(const ViewshedOptions& options) {
 }
 
 GridPlace place_on(const DemSource& source, double x, double y, const std::string& name) {
+  if (const std::optional<GridPlace> place = find_on(source, x, y)) return *place;
+  throw InvalidInput(name + " at (" + number_text(x) + ", " + number_text(y) +
+                     ") lies outside the DEM. Give its position in the DEM's coordinate system, or use a "
+                     "DEM that covers it.");
+}
+
+std::optional<GridPlace> find_on(const DemSource& source, double x, double y) {
   const Xy at = source.geotransform().to_raster(x, y);
-  if (!(at.x >= -0.5 && at.y >= -0.5 && at.x <= source.cols() - 0.5 && at.y <= source.rows() - 0.5)) {
-    throw InvalidInput(name + " at (" + number_text(x) + ", " + number_text(y) +
-                       ") lies outside the DEM. Give its position in the DEM's coordinate system, or use a "
-                       "DEM that covers it.");
-  }
+  if (!(at.x >= -0.5 && at.y >= -0.5 && at.x <= source.cols() - 0.5 && at.y <= source.rows() - 0.5))
+    return {};
   // Coordinates written with a dozen digits should hit the sample they mean.
   constexpr double kSampleSnap = 1e-7;  // cells
   const auto snapped = [](double value, int count) {

@@ -2,6 +2,7 @@
 // Where an observer stands on the DEM and how far he can be asked to look.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "earth/observer_frames.h"
@@ -28,6 +29,8 @@ struct GridPlace {
 // Throws InvalidInput when (x, y) is outside the DEM. In the outer half of a border cell the place on the rim
 // of the samples is taken, since the terrain ends there.
 GridPlace place_on(const DemSource&, double x, double y, const std::string& name);
+// The same without a complaint.
+std::optional<GridPlace> find_on(const DemSource&, double x, double y);
 
 // All samples within `distance_m` of the place (and some more), in the whole raster.
 Window reach_of(const DemSource&, const Georeference&, const GridPlace&, double distance_m);

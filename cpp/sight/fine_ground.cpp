@@ -112,7 +112,7 @@ double FineGround::per_amplitude(double half_m) const {
 
 float FineGround::spread(double row, double col, double half_m, double per_amplitude) const {
   const auto nearest = [](double x, int base, int count) {
-    return std::clamp(base + static_cast<int>(std::lround(x)), 0, count - 1);
+    return std::clamp(base + static_cast<int>(std::floor(x + 0.5)), 0, count - 1);
   };
   const double amplitude = terrain_.error.amplitude.at(nearest(row, base_row_, terrain_.mean.rows()),
                                                        nearest(col, base_col_, terrain_.mean.cols()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The terrain at a place of a sight line, from the samples around it. Private to sight_line.cpp.
+// The terrain at a place of a sight line, from the samples around it. Private to the sight lines.
 #pragma once
 
 #include <array>

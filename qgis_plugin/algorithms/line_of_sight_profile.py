@@ -18,6 +18,7 @@ from ..defaults import default
 from ..error_block import check_error_block, log_error_model, read_error_block
 from ..errors import core_errors
 from ..feedback import Progress
+from ..line_extras import extras_block, read_extras
 from ..line_outputs import write_critical_places, write_lines
 from ..observers import read_points
 from ..pairs import check_pairing, find_pairs
@@ -55,6 +56,9 @@ class LineOfSightProfile(SightboundAlgorithm):
         "visibility",
         "uncertainty",
         "confidence",
+        "probability",
+        "radio",
+        "fresnel",
         "dem",
         "terrain",
     )
@@ -98,6 +102,7 @@ class LineOfSightProfile(SightboundAlgorithm):
             + blocks.error_block()
             + [blocks.advanced(one) for one in height_fields]
             + blocks.sight_block()
+            + extras_block()
         ):
             self.add(parameter)
         lines, places = QgsProcessing.SourceType.TypeVectorLine, QgsProcessing.SourceType.TypeVectorPoint
@@ -143,7 +148,9 @@ class LineOfSightProfile(SightboundAlgorithm):
         by_name = word(self, parameters, "PAIRING", context) == "field"
         reach = number_or_none(self, parameters, "MAX_DISTANCE", context)
         self.pairs = find_pairs(*ends, by_name, reach, self.dem.crs, context, feedback)
+        self.extras = read_extras(self, parameters, context)
         self.arguments = {
+            **self.extras,
             "confidence": self.parameterAsDouble(parameters, "CONFIDENCE", context),
             "refraction": self.parameterAsDouble(parameters, "REFRACTION", context),
             "curvature": self.parameterAsBoolean(parameters, "CURVATURE", context),
@@ -190,7 +197,9 @@ class LineOfSightProfile(SightboundAlgorithm):
         results = {"ERROR_MODEL_USED": used}
         for verdict in VERDICTS:
             results[f"COUNT_{verdict.upper()}"] = sum(line.verdict == verdict for line in lines)
-        results["OUTPUT"] = write_lines(self, lines, self.dem, parameters, context)
+        results["OUTPUT"] = write_lines(
+            self, lines, self.dem, parameters, context, self.extras, feedback
+        )
         if given(parameters, "OUTPUT_CRITICAL"):
             results["OUTPUT_CRITICAL"] = write_critical_places(self, lines, self.dem, parameters, context)
         if given(parameters, "OUTPUT_HTML"):

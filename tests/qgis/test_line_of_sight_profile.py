@@ -98,3 +98,14 @@ def test_temporary_outputs_by_default(run, dem, observers, targets):
     results = run("lineofsightprofile", INPUT=dem, OBSERVERS=observers, TARGETS=targets,
                   OUTPUT=QgsProcessing.TEMPORARY_OUTPUT, OUTPUT_HTML=QgsProcessing.TEMPORARY_OUTPUT)  # fmt: skip
     assert results["OUTPUT_HTML"].endswith(".html") and results["OUTPUT"].featureCount() == 6
+
+
+def test_probability_and_fresnel_zone(run, dem, observers, targets, tmp_path):
+    page = tmp_path / "profiles.html"
+    results = run("lineofsightprofile", INPUT=dem, OBSERVERS=observers, TARGETS=targets, PROBABILITY=True,
+                  REALISATIONS=64, FREQUENCY=900.0, FRESNEL_SHARE=0.5, OUTPUT_HTML=str(page), **COMMON)  # fmt: skip
+    for line in results["OUTPUT"].getFeatures():
+        assert 0.0 <= line["fresnel_probability"] <= line["probability"] <= 1.0
+        assert 0.0 <= line["blocked_bound"] <= 1.0 and line["fresnel_p"] <= line["p"] + 1e-6
+    text = page.read_text(encoding="utf-8")
+    assert text.count("class='zone'") >= 6 and "the whole line is clear with P" in text and "Fresnel zone" in text

@@ -10,7 +10,7 @@ from qgis.core import (
     QgsProcessingParameterDefinition,
 )
 
-VISIBILITY = ("confidenceviewshed", "probableviewshed", "errorsurfaces", "estimateerror", "lineofsightprofile")
+VISIBILITY = ("confidenceviewshed", "probableviewshed", "errorsurfaces", "estimateerror", "lineofsightprofile", "intervisibility")
 WITH_ERROR_BLOCK = tuple(name for name in VISIBILITY if name != "estimateerror")
 VOLUME = ("builderrorvolume", "volumeviewshed", "volumetargets", "subtractobserver", "volumetoraster")
 SIMPLIFICATION = ("demtotin", "simplifytin", "verifytin")
@@ -110,6 +110,8 @@ def test_rarely_used_parameters_need_no_value_in_a_model(algorithm):
     assert needed <= {
         "INPUT",
         "OBSERVERS",
+        "POINTS_A",
+        "HEIGHT_A",
         "TARGETS",
         "OBSERVER_HEIGHT",
         "TARGET_HEIGHT",
@@ -126,7 +128,7 @@ def test_dialog_hands_over_what_the_algorithm_accepts(algorithm, dem, observers,
 
     dialog = AlgorithmDialog(algorithm.create())
     file = "volume.vdb"  # the dialog looks at the ending alone
-    given = {"INPUT": dem, "OBSERVERS": observers, "TARGETS": observers, "HIDDEN": file}
+    given = {"INPUT": dem, "OBSERVERS": observers, "TARGETS": observers, "HIDDEN": file, "POINTS_A": observers}
     given |= {"SIMPLIFIED_TIN": observers, "TOLERANCE": 1.0}
     if algorithm.parameterDefinition("INPUT").type() == "file":
         given["INPUT"] = file

@@ -109,6 +109,7 @@ def test_lines_and_critical_places_are_styled(loaded, dem, observers):
     layers = loaded(
         "lineofsightprofile", ["OUTPUT", "OUTPUT_CRITICAL"], INPUT=dem, OBSERVERS=observers, TARGETS=observers
     )
+    layers.update(network=loaded("intervisibility", ["OUTPUT"], INPUT=dem, POINTS_A=observers)["OUTPUT"])
     for layer in layers.values():
         renderer = layer.renderer()
         assert renderer.type() == "categorizedSymbol" and renderer.classAttribute() == "verdict"

@@ -27,7 +27,7 @@ def geologic(d, delta, model="gaussian", range_m=None, exponent=None, cell=None)
         share = 0.0 if d < range_m else 1.0
     elif model == "growth":
         t, h = 2 * d / cell, np.minimum(exponent, 1.0)
-        share = np.where(t < 1, (np.minimum(t, 1) * (2 - np.minimum(t, 1))) ** h, np.maximum(t, 1) ** (h / 2))
+        share = np.where(t < 1, (np.minimum(t, 1) * (2 - np.minimum(t, 1))) ** h, np.clip(t, 1, math.sqrt(2)) ** (h / 2) * np.maximum(t / math.sqrt(2), 1) ** exponent)
     else:
         share = 1 - math.exp(-0.5 * (delta * d if range_m is None else d / range_m) ** 2)
     return delta / Z95 * share

@@ -93,7 +93,9 @@ TEST(ResolveError, ZeroIsZero) {
 }
 
 TEST(ResolveError, NothingSaidIsLearnt) {
-  const Resolved r = resolve(ErrorModel());
+  ErrorModel model;
+  model.samples_or_means = CellContent::kSamples;
+  const Resolved r = resolve(model);
   EXPECT_TRUE(r.field.sampling.is_constant());
   EXPECT_EQ(r.field.sampling.constant(), 0);  // heights are not rounded
   ASSERT_FALSE(r.field.amplitude.is_constant());

@@ -93,7 +93,7 @@ TEST(EndFaces, what_is_inside_a_body_is_hidden) {
   EXPECT_EQ(scene.verdict({-1, -1, 30}, {1, 1, 30}), kUncertain);
 }
 
-// In the middle of the wall the nearest sample is 22 m off: the error there is 2.2 amplitudes.
+// In the middle of the wall the nearest sample is 22 m off: the error there is 1.9 amplitudes.
 TEST(EndFaces, doubt_between_the_samples_needs_a_thicker_wall) {
   EXPECT_EQ(Scene(box({3, -20, -10}, {3.3, 20, 10}), 0.2).verdict(kEye, {3.5, 0.3, 0.2}), kUncertain);
   EXPECT_EQ(Scene(box({3, -20, -10}, {8, 20, 10}), 0.2).verdict(kEye, {8.5, 0.3, 0.2}), kHidden);

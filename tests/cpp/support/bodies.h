@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "error_model/error_field.h"
+#include "support/growth.h"
 #include "terrain/tin.h"
 #include "volume/tin_error.h"
 
@@ -155,7 +156,7 @@ inline NearestByHand nearest_by_hand(const Tin& tin, const TinError& error, cons
     }
     double share = 0;
     if (error.profile.shape == GeologicShape::kGrowth) {
-      share = std::pow(2 * d / error.spacing_m, error.profile.exponent);
+      share = growth(2 * d / error.spacing_m, error.profile.exponent);
     } else {
       share = 1 - std::exp(-0.5 * std::pow(amplitude * 1.959963984540054 * d, 2));
     }

@@ -10,6 +10,7 @@
 #include <memory>
 #include <random>
 
+#include "support/growth.h"
 #include "volume/dem_surface.h"
 
 namespace sightbound::testing {
@@ -80,7 +81,7 @@ struct RandomDem {
         between = d < range ? 0 : a;
         break;
       case GeologicShape::kGrowth:
-        between = a * std::pow(2 * d / spacing(), exponent);
+        between = a * growth(2 * d / spacing(), exponent);
         break;
     }
     return {linear(height), std::max(linear(sampling) + between, 0.001)};
