@@ -201,7 +201,7 @@ TEST(ProbableViewshed, HolesClaimNothing) {
   EXPECT_EQ(made.verdict.at(20, 28), kVisible);
   EXPECT_EQ(made.verdict.at(20, 60), kUncertain);
   EXPECT_NEAR(made.probability.at(20, 60), 0.5, 0.06);
-  EXPECT_EQ(made.verdict.at(14, 60), kHidden);  // by the wall before the hole
+  EXPECT_EQ(made.verdict.at(8, 60), kHidden);  // by the wall before the hole
   EXPECT_EQ(made.verdict.at(39, 70), kHidden);  // by the wall behind it
   EXPECT_TRUE(std::isnan(made.probability.at(20, 30)));
 }
