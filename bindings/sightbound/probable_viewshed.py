@@ -135,7 +135,7 @@ def probable_viewshed(
     Terrains are drawn that could lie behind the DEM: at the samples from what the measurements leave open, half-way between
     samples with the error model's between-sample error. Eye and target stand on the ground of each. Unlike the p of
     viewshed(), which judges one critical place, this is the probability for the whole line; with several observers, that any
-    of them sees the cell. What lies behind nodata counts as not seen.
+    of them sees the cell. Behind nodata half of what known ground leaves is seen: no claim.
 
     Args:
         realisations: terrains drawn at most, 1 to 65535; the standard error is at most 0.5 / sqrt(realisations).

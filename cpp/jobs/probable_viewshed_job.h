@@ -67,9 +67,9 @@ struct ProbableViewshed {
   ProbableReport report;
 };
 
-// Eye and target stand on the ground of each realisation. A cell behind unknown ground (nodata) counts as not
-// seen. The same bytes for any number of threads and any extent. Throws InvalidInput, IoError, OverBudget,
-// Cancelled.
+// Eye and target stand on the ground of each realisation. A cell behind unknown ground (nodata) is seen in
+// half of the realisations in which known ground leaves it seen: a hole makes no claim. The same bytes for
+// any number of threads and any extent. Throws InvalidInput, IoError, OverBudget, Cancelled.
 ProbableViewshed run_probable_viewshed(const DemSource&, const std::vector<Observer>&, const ErrorModel&,
                                        const ProbableOptions&, Progress&);
 

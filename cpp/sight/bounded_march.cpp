@@ -71,7 +71,7 @@ void BoundedMarch::ask_targets(int line, const Wanted& wanted, const ProbableEye
     if (!last_lines.empty() && line > last_lines[at(nearest)]) continue;
     const int row = fan_.row_of(line, n), col = fan_.col_of(line, n);
     if (const Layers layers = wanted(row, col))
-      judge({line, nearest, n, row, col, layers, 0}, nodes_[at(2 * n - first_node_)], eye);
+      judge({line, nearest, n, row, col, layers, 0, false}, nodes_[at(2 * n - first_node_)], eye);
   }
 }
 
@@ -81,6 +81,7 @@ void BoundedMarch::judge(const Target& asked, const HeightRange& ground, const P
   const RaySlope slope = ray_slope(s, per_2r);
   Target target = asked;
   target.open = 0;
+  target.behind_unknown = horizon.behind_unknown;
   float lowest = kInfinity, highest_fine = -kInfinity;
   bool fine_is_known = false;
   for (std::size_t l = 0; l < heights_.size(); ++l) {
@@ -95,7 +96,7 @@ void BoundedMarch::judge(const Target& asked, const HeightRange& ground, const P
       highest_fine = fine_.highest(places, refinement_.at_target, horizon.ground, ground, eye_);
       fine_is_known = true;
     }
-    if (top.low >= std::max(horizon.high, highest_fine)) {
+    if (!horizon.behind_unknown && top.low >= std::max(horizon.high, highest_fine)) {
       target.seen |= bit;
     } else {
       target.open |= bit;
@@ -128,9 +129,9 @@ void BoundedMarch::cross(int ray, int line) {
   horizon.place = place;
   horizon.ground = ground;
   horizon.line = line;
-  if (!(rise.high <= horizon.low)) {
-    // What is not known hides all behind it.
-    if (std::isnan(rise.high)) rise = {kInfinity, kInfinity};
+  if (std::isnan(rise.high)) {
+    horizon.behind_unknown = true;
+  } else if (rise.high > horizon.low) {
     peaks_[at(ray)].push_back({line, rise.high});
     horizon.low = std::max(horizon.low, rise.low);
     horizon.high = std::max(horizon.high, rise.high);

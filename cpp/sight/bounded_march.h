@@ -38,9 +38,10 @@ struct Refinement {
 class BoundedMarch {
  public:
   struct Target {
-    int line, ray, minor;  // samples
-    int row, col;          // on the terrain's grid
-    Layers open, seen;     // neither in all realisations; in all realisations
+    int line, ray, minor;         // samples
+    int row, col;                 // on the terrain's grid
+    Layers open, seen;            // neither in all realisations; in all realisations
+    bool behind_unknown = false;  // nodata lies before it: never seen for sure
   };
 
   // `wanted`: the layers that matter of a cell; `eye`: heights of the eye itself; `heights`: of the targets
@@ -67,6 +68,7 @@ class BoundedMarch {
     RayPlace place;  // last crossing
     HeightRange ground;
     int line = -1;  // of the last crossing
+    bool behind_unknown = false;
   };
   // A crossing that may be higher than all before.
   struct Peak {

@@ -68,6 +68,15 @@ SixteenEyes ProbableView::eyes(std::uint32_t first_realisation) const {
   return eyes;
 }
 
+// A coin for each realisation, whoever looks.
+std::uint16_t ProbableView::open_holes(std::uint32_t first_realisation) const {
+  constexpr std::uint64_t kHoleDraws = 0x686f6c65;
+  const DrawKey key = draw_key(terrain_.seed ^ kHoleDraws, 0, 0);
+  std::uint32_t bits = 0;
+  for (std::uint32_t l = 0; l < kLanes; ++l) bits |= (draw_bits(key, first_realisation + l) & 1) << l;
+  return static_cast<std::uint16_t>(bits);
+}
+
 void ProbableView::bound(std::size_t number, CellLayers& cells) {
   Block& block = blocks_[number];
   const RayFan fan(terrain_, eye_, bend_, block.rays);
@@ -97,7 +106,7 @@ void ProbableView::look(std::size_t number, const CellLayers& cells, const Draws
   PlanRunner runner;
   for (int i = 0; i < draws.sixteens; ++i) {
     const std::uint32_t first = draws.first + static_cast<std::uint32_t>(i * kLanes);
-    runner.run(plan, eyes(first), heights_, first, {seen.bits + i, seen.stride});
+    runner.run(plan, eyes(first), heights_, first, open_holes(first), {seen.bits + i, seen.stride});
   }
 }
 

@@ -2,9 +2,11 @@
 // What one observer sees of the terrains that could lie behind a DEM.
 //
 // Each ray carries the horizons of sixteen realisations outward. Only what may decide is drawn
-// (bounded_march.h). Eye and target stand on each realised ground. Cost: some 40 ns of one processor a sample
-// for what all realisations have in common; then it depends on how much of the view is in doubt: on fractal
-// terrain a few nanoseconds a sample for sixteen realisations. Memory: some megabytes a thread.
+// (bounded_march.h). Unknown ground (nodata) is open or closed to sight by a coin
+// thrown for each realisation: behind it half of what the known ground leaves is seen. Eye and target stand
+// on each realised ground. Cost: some 40 ns of one processor a sample for what all realisations have in
+// common; then it depends on how much of the view is in doubt: on fractal terrain a few nanoseconds a sample
+// for sixteen realisations. Memory: some megabytes a thread.
 #pragma once
 
 #include <cstddef>
@@ -52,6 +54,7 @@ class ProbableView {
   HeightRange eye_range() const;
   Departure departure_at_eye() const;
   SixteenEyes eyes(std::uint32_t first_realisation) const;
+  std::uint16_t open_holes(std::uint32_t first_realisation) const;
   template <class Visit>
   void nodes_at_eye(const Visit&) const;
   Layers all_layers() const { return static_cast<Layers>((1u << heights_.size()) - 1); }

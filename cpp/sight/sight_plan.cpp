@@ -61,7 +61,7 @@ class Writer {
     const auto ray = static_cast<std::uint32_t>(target.ray);
     plan_.targets.push_back({ray_slope(s, per_2r), node(target.line, 2 * target.minor), ray,
                              add_fine(places_[ray], place, per_2r, refinement_.at_target), item, target.open,
-                             refinement_.at_target});
+                             refinement_.at_target, target.behind_unknown});
   }
 
   void add_crossing(int line, int i) {
@@ -140,8 +140,7 @@ class Writer {
 SIGHTBOUND_INLINE void raise(const Lanes& ground, const Lanes& eye, const RaySlope& slope, Lanes& horizon) {
   for (int l = 0; l < kLanes; ++l) {
     const float rise = (ground.v[l] - eye.v[l]) * slope.per_s - slope.drop;
-    // What is not known hides all behind it.
-    horizon.v[l] = larger(rise == rise ? rise : kInfinity, horizon.v[l]);
+    horizon.v[l] = larger(rise, horizon.v[l]);  // what is not known (NaN) raises nothing
   }
 }
 
@@ -175,7 +174,7 @@ struct Working {
 
 SIGHTBOUND_VECTOR
 void carry_out(const SightPlan& plan, const Lanes& eye, const float* heights, std::uint32_t first,
-               const Working& work, const SeenBits& seen) {
+               std::uint16_t open_holes, const Working& work, const SeenBits& seen) {
   SightPlan::Line from{0, 0, 0, 0};
   for (const SightPlan::Line& to : plan.lines) {
     for (; from.samples < to.samples; ++from.samples) {
@@ -201,7 +200,8 @@ void carry_out(const SightPlan& plan, const Lanes& eye, const float* heights, st
       for (unsigned layers = target.layers; layers != 0; layers &= layers - 1) {
         const int l = std::countr_zero(layers);
         std::uint16_t& bits = seen.bits[(target.item + static_cast<std::size_t>(l)) * seen.stride];
-        bits = static_cast<std::uint16_t>(bits | seen_over(horizon, ground, heights[l], eye, target.slope));
+        const unsigned over = seen_over(horizon, ground, heights[l], eye, target.slope);
+        bits = static_cast<std::uint16_t>(bits | (target.behind_unknown ? over & open_holes : over));
       }
     }
     for (; from.crossings < to.crossings; ++from.crossings) {
@@ -226,13 +226,14 @@ SightPlan write_plan(const BoundedMarch& march, const RayFan& fan, const Realise
 }
 
 void PlanRunner::run(const SightPlan& plan, const SixteenEyes& eyes, const std::vector<float>& heights,
-                     std::uint32_t first, const SeenBits& seen) {
+                     std::uint32_t first, std::uint16_t open_holes, const SeenBits& seen) {
   Lanes low;
   std::fill_n(low.v, kLanes, -kInfinity);
   slots_.resize(plan.slots);
   horizons_.assign(at(plan.rays), low);
   places_.assign(at(plan.rays), eyes.ground);
-  carry_out(plan, eyes.eye, heights.data(), first, {slots_.data(), horizons_.data(), places_.data()}, seen);
+  carry_out(plan, eyes.eye, heights.data(), first, open_holes,
+            {slots_.data(), horizons_.data(), places_.data()}, seen);
 }
 
 }  // namespace sightbound

@@ -37,6 +37,7 @@ struct SightPlan {
     std::uint32_t ray, fine, item;  // where the answer goes
     Layers layers;
     Fineness fineness;
+    bool behind_unknown;
   };
   // Ends of what belongs to a line; it is carried out in this order.
   struct Line {
@@ -62,8 +63,8 @@ struct SixteenEyes {
   Lanes ground, eye;  // absolute heights
 };
 
-// Bit l of seen[(item + layer) stride]: seen in realisation first + l. Bits are added to those that are
-// there.
+// Bit l of `open_holes`: sight crosses unknown ground in realisation first + l. Bit l of seen[(item + layer)
+// stride]: seen in realisation first + l. Bits are added to those that are there.
 struct SeenBits {
   std::uint16_t* bits;
   std::size_t stride;
@@ -71,7 +72,7 @@ struct SeenBits {
 class PlanRunner {
  public:
   void run(const SightPlan&, const SixteenEyes&, const std::vector<float>& heights, std::uint32_t first,
-           const SeenBits&);
+           std::uint16_t open_holes, const SeenBits&);
 
  private:
   std::vector<Lanes> slots_, horizons_, places_;  // of lines; of rays; of rays

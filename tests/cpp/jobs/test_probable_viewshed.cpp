@@ -186,10 +186,24 @@ TEST(ProbableViewshed, LimitsAndHoles) {
                                static_cast<int>(std::lround(place.x)));
   };
   EXPECT_EQ(in_result(30, 20), 1);
-  EXPECT_EQ(in_result(30, 35), 0);  // behind the hole
+  EXPECT_NEAR(in_result(30, 35), 0.5, 0.15);  // behind the hole: the coin
   EXPECT_TRUE(std::isnan(in_result(30, 30)));
   EXPECT_TRUE(std::isnan(in_result(30, 5)));  // to the west
   EXPECT_TRUE(std::isnan(in_result(5, 10)));
+}
+
+// What known ground hides is hidden, before the hole or behind it; the rest is not known.
+TEST(ProbableViewshed, HolesClaimNothing) {
+  const Dem dem(41, 81, [](int r, int c) {
+    return c == 30 && r > 10 ? kNan : c == 20 && r < 18 ? 40.0f : c == 50 && r > 30 ? 40.0f : 0.0f;
+  });
+  const ProbableViewshed made = dem.seen(at(20, 5), no_error(), flat(1000));
+  EXPECT_EQ(made.verdict.at(20, 28), kVisible);
+  EXPECT_EQ(made.verdict.at(20, 60), kUncertain);
+  EXPECT_NEAR(made.probability.at(20, 60), 0.5, 0.06);
+  EXPECT_EQ(made.verdict.at(8, 60), kHidden);  // by the wall before the hole
+  EXPECT_EQ(made.verdict.at(39, 70), kHidden);  // by the wall behind it
+  EXPECT_TRUE(std::isnan(made.probability.at(20, 30)));
 }
 
 TEST(ProbableViewshed, SaysWhatIsWrong) {
