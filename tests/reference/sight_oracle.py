@@ -294,7 +294,9 @@ class Oracle:
         elif e.model == "step":
             q = np.where(d < e.range, 0.0, 1.0)
         elif e.model == "growth":
-            q = (2 * d / self.cell) ** e.exponent
+            t, h, root2 = 2 * d / self.cell, min(e.exponent, 1.0), np.sqrt(2)
+            q = np.where(t < 1, (np.minimum(t, 1) * (2 - np.minimum(t, 1))) ** h,
+                         np.clip(t, 1, root2) ** (h / 2) * np.maximum(t / root2, 1) ** e.exponent)
         else:
             raise ValueError(e.model)
         return amplitude * q
