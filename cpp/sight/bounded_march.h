@@ -26,10 +26,13 @@ inline constexpr int kMostLayers = 16;
 // How finely ground is drawn near the ends of the lines of sight.
 struct Refinement {
   Fineness nearest = Fineness::kNone, near = Fineness::kNone, at_target = Fineness::kNone;
+  bool crossings = false;                                  // rays depart from the line between two nodes
   static constexpr int kNearestLines = 2, kNearLines = 8;  // from the eye
 
   static Refinement none() { return {}; }
-  static Refinement end_zones() { return {Fineness::kQuarters, Fineness::kHalves, Fineness::kQuarters}; }
+  static Refinement end_zones() {
+    return {Fineness::kQuarters, Fineness::kHalves, Fineness::kQuarters, true};
+  }
   Fineness from_eye(int line) const {
     return line < kNearestLines ? nearest : (line < kNearLines ? near : Fineness::kNone);
   }

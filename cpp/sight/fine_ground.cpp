@@ -30,13 +30,14 @@ HeightRange slope_range(const HeightRange& ground, const HeightRange& eye, const
           (ground.high - eye.low) * slope.per_s - slope.drop + room};
 }
 
-FineGround::FineGround(const OpenTerrain& terrain, bool transposed, int base_row, int base_col)
+FineGround::FineGround(const OpenTerrain& terrain, bool transposed, int base_row, int base_col,
+                       bool crossings)
     : terrain_(terrain),
       transposed_(transposed),
       base_row_(base_row),
       base_col_(base_col),
       half_across_(terrain.error.larger_side_m / 4),
-      across_per_amplitude_(per_amplitude(half_across_)) {}
+      across_per_amplitude_(crossings ? per_amplitude(half_across_) : 0) {}
 
 DrawKey FineGround::key_of(double row, double col, std::uint64_t kind) const {
   const auto eighth = [](double x, std::int64_t base) {

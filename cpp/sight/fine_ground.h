@@ -43,8 +43,8 @@ using FinePlaces = FinePlace[3];
 
 class FineGround {
  public:
-  // With the base sample on the terrain's grid.
-  FineGround(const OpenTerrain&, bool transposed, int base_row, int base_col);
+  // With the base sample on the terrain's grid. Without `crossings` nothing departs between nodes.
+  FineGround(const OpenTerrain&, bool transposed, int base_row, int base_col, bool crossings = true);
 
   // `per_2r`: (1 - refraction) / 2R along the ray.
   void between(const RayPlace& a, const RayPlace& b, double per_2r, Fineness, FinePlaces& out) const;

@@ -51,7 +51,7 @@ HeightRange ProbableView::eye_range() const {
 Departure ProbableView::departure_at_eye() const {
   const double col = eye_.frame->col(), row = eye_.frame->row();
   const auto share = [](double place) { return 2 * place - std::floor(2 * place); };
-  const FineGround fine(terrain_, false, eye_.base_row, eye_.base_col);
+  const FineGround fine(terrain_, false, eye_.base_row, eye_.base_col, refinement_.crossings);
   return fine.inside({col, row, 0}, share(col), share(row));
 }
 
@@ -80,7 +80,7 @@ std::uint16_t ProbableView::open_holes(std::uint32_t first_realisation) const {
 void ProbableView::bound(std::size_t number, CellLayers& cells) {
   Block& block = blocks_[number];
   const RayFan fan(terrain_, eye_, bend_, block.rays);
-  const FineGround fine(terrain_, block.rays.transposed, eye_.base_row, eye_.base_col);
+  const FineGround fine(terrain_, block.rays.transposed, eye_.base_row, eye_.base_col, refinement_.crossings);
   BoundedMarch march(fan, columns_[block.rays.transposed ? 1 : 0], fine, refinement_, eye_range(), heights_);
   march.run([&](int, int) { return all_layers(); }, eye_, {});
   for (const BoundedMarch::Target& target : march.targets()) {
@@ -96,7 +96,7 @@ void ProbableView::look(std::size_t number, const CellLayers& cells, const Draws
   Block& block = blocks_[number];
   if (std::ranges::all_of(block.last_lines, [](int line) { return line < 0; })) return;
   const RayFan fan(terrain_, eye_, bend_, block.rays);
-  const FineGround fine(terrain_, block.rays.transposed, eye_.base_row, eye_.base_col);
+  const FineGround fine(terrain_, block.rays.transposed, eye_.base_row, eye_.base_col, refinement_.crossings);
   const RealisedColumns& columns = columns_[block.rays.transposed ? 1 : 0];
   BoundedMarch march(fan, columns, fine, refinement_, eye_range(), heights_);
   march.run([&](int row, int col) { return cells.open.at(row, col); }, eye_, block.last_lines);
