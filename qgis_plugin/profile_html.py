@@ -64,8 +64,10 @@ def _section(line, z):
 def _extra_facts(sight):
     facts, whole, zone = [], sight.whole_line, sight.fresnel
     if whole is not None:
-        clear = tr("the whole line is clear with P = {:.3f} ± {:.3f}, blocked with {:.2g} at most")
-        facts.append(clear.format(whole.probability, whole.standard_error, whole.blocked_bound))
+        clear = tr("the whole line is clear with P = {:.3f} ± {:.3f}")
+        facts.append(clear.format(whole.probability, whole.standard_error))
+    if whole is not None and math.isfinite(whole.blocked_bound):
+        facts.append(tr("blocked with {:.2g} at most").format(whole.blocked_bound))
     if whole is not None and math.isfinite(whole.blocked_distance):
         most = tr("most often at {:.0f} m, in {:.1%} of the terrains drawn")
         facts.append(most.format(whole.blocked_distance, whole.blocked_share))

@@ -47,6 +47,16 @@ SIGHTBOUND_INLINE std::uint32_t draw_bits(const DrawKey& key, std::uint32_t real
   return mix(mix(key.a ^ (realisation * 0x9e3779b9u)) + key.b);
 }
 
+// A coin for each of sixteen realisations: bit l, whether sight crosses unknown ground in realisation first +
+// l.
+inline std::uint16_t open_holes(std::uint64_t seed, std::uint32_t first) {
+  constexpr std::uint64_t kHoleDraws = 0x686f6c65;
+  const DrawKey key = draw_key(seed ^ kHoleDraws, 0, 0);
+  std::uint32_t bits = 0;
+  for (std::uint32_t l = 0; l < kLanes; ++l) bits |= (draw_bits(key, first + l) & 1) << l;
+  return static_cast<std::uint16_t>(bits);
+}
+
 // -ln x for x in (0, 1], within 2e-7 of it relative to its size or absolutely.
 SIGHTBOUND_INLINE float minus_log(float x) {
   // x = m 2^e with m from 1 / sqrt 2 to sqrt 2; ln m by a polynomial (Cephes, logf).

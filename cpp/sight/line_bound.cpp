@@ -124,6 +124,7 @@ double ratio(const Sum& clearance, double variance) {
 
 double blocked_bound(const LineInDoubt& line) {
   if (line.places.empty()) return 0;
+  if (!line.normal) return std::numeric_limits<double>::quiet_NaN();
   const Clearances clearances(line);
   struct Known {
     Sum clearance;
@@ -142,11 +143,14 @@ double blocked_bound(const LineInDoubt& line) {
     return below_while_above(-after.k, -before.k, rho);
   };
   const std::size_t crossings = line.over.places.size();
-  double bound = 0;
+  double bound = 0, closed = 0;  // the latter: by unknown ground
   Known before{{}, 0, 0};
-  for (std::size_t i = 0; i < line.places.size() && bound < 1; ++i) {
+  for (std::size_t i = 0; i < line.places.size(); ++i) {
     if (!line.places[i].judged) continue;
-    if (i < crossings && !line.over.places[i].known) return 1;
+    if (line.places[i].unknown) {
+      closed = 0.5;
+      continue;
+    }
     Known here = known(i);
     if (i < crossings) {
       bound += step(before, here);
@@ -156,7 +160,7 @@ double blocked_bound(const LineInDoubt& line) {
       bound += line.places[a].judged ? step(known(a), here) : normal_cdf(-here.k);
     }
   }
-  return std::min(bound, 1.0);
+  return closed + (1 - closed) * std::min(bound, 1.0);
 }
 
 }  // namespace sightbound

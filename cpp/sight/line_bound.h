@@ -14,7 +14,7 @@
 
 namespace sightbound {
 
-// At most 1. For normal draws.
+// At most 1. NaN where draws are not normal: of sums of others no such probabilities are known.
 double blocked_bound(const LineInDoubt&);
 
 }  // namespace sightbound

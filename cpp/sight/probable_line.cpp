@@ -82,6 +82,8 @@ std::uint32_t below(const DoubtfulPlace& place, const Lanes& ground, const Lanes
 LineInDoubt::LineInDoubt(const Scene& scene, const OpenTerrain& terrain, const RealisedColumns& columns,
                          const Eye& eye, const Target& target, const LineDoubt& doubt)
     : over(terrain.mean, eye, target),
+      normal(scene.error.tails == Tails::kNormal),
+      seed(terrain.seed),
       datum(std::floor(eye.height)),
       eye_ground(doubt.eye_ground - datum),
       target_ground(doubt.target_ground - datum) {
@@ -105,6 +107,7 @@ LineInDoubt::LineInDoubt(const Scene& scene, const OpenTerrain& terrain, const R
     place.with_target = static_cast<float>(both ? t : (near_target ? 1 : 0));
     place.zone = static_cast<float>(doubt.zone_share * first_zone_radius(doubt.wavelength, length, t));
     place.judged = i != 0 && i + 1 != over.places.size() && (known[i] || !scene.see_across_nodata);
+    place.unknown = !known[i];
     places.push_back(place);
   }
 }
@@ -154,9 +157,12 @@ void LineInDoubt::find_fine(const FineGround& ground) {
   for (std::size_t i = 0; i <= last; ++i) {
     const NodePlace& place = over.places[i];
     where.push_back({place.major, place.minor, place.share * over.distance});
-    const bool between = i != 0 && i != last && place.nodes == 2;
-    across.push_back(between ? ground.across(where[i], static_cast<double>(place.weight[1]))
-                             : Departure{{}, 0});
+    if (i == 0 || i == last) {
+      const auto share = [](double samples) { return 2 * samples - std::floor(2 * samples); };
+      across.push_back(ground.inside(where[i], share(place.major), share(place.minor)));
+    } else {
+      across.push_back(ground.across(where[i], place.nodes == 2 ? static_cast<double>(place.weight[1]) : 0));
+    }
   }
   const auto halve = [&](int a, int b, const FinePlace& place) {
     const RayPlace one = where[at(a)], other = where[at(b)];
@@ -193,10 +199,14 @@ LineCounts count_clear(const LineInDoubt& line, int realisations) {
   for (int first = 0; first < realisations && !line.places.empty(); first += kLanes) {
     const std::uint32_t used = (1u << std::min(kLanes, realisations - first)) - 1;
     draw_ground(line, static_cast<std::uint32_t>(first), drawn);
+    const std::uint32_t hidden =
+                            ~std::uint32_t{open_holes(line.seed, static_cast<std::uint32_t>(first))} & 0xFFFF,
+                        closed = hidden | hidden << kLanes;
     std::uint32_t any = 0;
     for (std::size_t i = 0; i < line.places.size(); ++i) {
       if (!line.places[i].judged) continue;
-      const std::uint32_t bits = below(line.places[i], drawn.ground[i], drawn.eye, drawn.target);
+      const std::uint32_t bits =
+          line.places[i].unknown ? closed : below(line.places[i], drawn.ground[i], drawn.eye, drawn.target);
       if (bits == 0) continue;
       any |= bits;
       counts.blocked[i] += std::popcount(bits & used);

@@ -4,8 +4,9 @@
 // to it.
 //
 // A realisation is clear when the line lies nowhere below the ground, at its crossings with the half-cell
-// lines of nodes and on fine ground near both ends, whichever is the observer. Cost: for each sixteen
-// realisations some 0.8 us a cell of the line.
+// lines of nodes and on fine ground near both ends, whichever is the observer. Unknown ground is open or
+// closed to sight by a coin thrown for each realisation. Cost: for each sixteen realisations some 0.8 us a
+// cell of the line.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +32,7 @@ struct DoubtfulPlace {
   float with_eye = 0, with_target = 0;  // by what share of an end's rise it rises (or the ground sinks)
   float zone = 0;                       // metres to keep clear for radio
   bool judged = true;                   // not: an end, or unknown ground that sight may cross
+  bool unknown = false;                 // crossed in half of the realisations
 };
 
 // A node, or a sample, and the numbers of what it is drawn from, in the order of NodeParents.
@@ -57,6 +59,8 @@ struct LineInDoubt {
   double row(std::size_t i) const { return over.transposed ? where[i].major : where[i].minor; }
 
   LineOverNodes over;
+  bool normal;  // all that is drawn
+  std::uint64_t seed;
   double datum;
   double eye_ground, target_ground;  // of the DEM at the ends
   std::vector<SampleDraw> sources;   // samples, and centres of squares

@@ -70,11 +70,7 @@ SixteenEyes ProbableView::eyes(std::uint32_t first_realisation) const {
 
 // A coin for each realisation, whoever looks.
 std::uint16_t ProbableView::open_holes(std::uint32_t first_realisation) const {
-  constexpr std::uint64_t kHoleDraws = 0x686f6c65;
-  const DrawKey key = draw_key(terrain_.seed ^ kHoleDraws, 0, 0);
-  std::uint32_t bits = 0;
-  for (std::uint32_t l = 0; l < kLanes; ++l) bits |= (draw_bits(key, first_realisation + l) & 1) << l;
-  return static_cast<std::uint16_t>(bits);
+  return sightbound::open_holes(terrain_.seed, first_realisation);
 }
 
 void ProbableView::bound(std::size_t number, CellLayers& cells) {

@@ -125,6 +125,9 @@ def test_both_ways_alike(model):
     bounds = np.array([(one.whole_line.blocked_bound, other.whole_line.blocked_bound) for one, other in zip(there, back)])
     blocked = 1 - np.array([line.probability for line in there])
     assert len(set(blocked)) > 10
+    if model is None:  # learnt: the tails need not be normal, and then no bound is known
+        assert np.isnan(bounds).all() or np.isfinite(bounds).all()
+        return
     assert (bounds.min(axis=1) >= blocked - 4 * np.sqrt(blocked * (1 - blocked) / 256) - 1 / 256).all()
 
 
@@ -174,8 +177,10 @@ def test_unknown_ground():
     z[:, 15] = np.nan
     dem, how = sb.Dem(z, GT), dict(observer_height=90.0, target_height=90.0, error_model=sb.ErrorModel(0.5, 0, 0), realisations=64)
     blocked, across = (lines(dem, [((14, 4), (16, 27))], see_across_nodata=see, **how)[0] for see in (False, True))
-    assert blocked.probability == 0 and blocked.whole_line.blocked_bound == 1
+    assert 0.25 < blocked.probability < 0.75 and blocked.whole_line.verdict == 1 and blocked.whole_line.blocked_bound == pytest.approx(0.5)
     assert 14 <= blocked.whole_line.blocked_at[0] / 10 - 0.5 <= 16
+    low = lines(dem, [((14, 4), (16, 27))], **{**how, "observer_height": -50.0})[0]
+    assert low.probability == 0 and low.whole_line.blocked_bound == 1
     assert across.probability == 1 and across.whole_line.blocked_bound < 1e-9
 
 
