@@ -261,7 +261,7 @@ Estimate estimate(const DemSource& source, std::optional<CellContent> content, P
     add_block(block, sums, tiles);
     growth.add(block);
     rounding.add(block);
-    kept.push_back(std::move(block));
+    if (i < blocks.spread()) kept.push_back(std::move(block));
   }
   Estimate out;
   judge_content(growth, content, out);

@@ -20,18 +20,32 @@ ProbableView::ProbableView(const OpenTerrain& terrain, const ProbableEye& eye, s
   for (const RayBlock& rays : ray_blocks(eye)) blocks_.push_back({rays, {}});
 }
 
-// The ground in the eye's place: between the four nodes around. Visits each with its part.
+// The ground in the eye's place: between the four nodes around, or those that are known beside a hole. Visits
+// each with its part.
 template <class Visit>
 void ProbableView::nodes_at_eye(const Visit& visit) const {
   const double col = 2 * eye_.frame->col(), row = 2 * eye_.frame->row();
   const int c = 2 * eye_.base_col + static_cast<int>(col), r = 2 * eye_.base_row + static_cast<int>(row);
   const int c1 = std::min(c + 1, columns_[0].majors() - 1), r1 = std::min(r + 1, columns_[0].minors() - 1);
   const auto u = static_cast<float>(col - std::floor(col)), v = static_cast<float>(row - std::floor(row));
+  struct Part {
+    int line, node;
+    float part;
+  };
+  std::vector<Part> parts;
+  std::vector<HeightRange> one;
+  float sum = 0;
   for (const auto& [line, along] : {std::pair{c, 1 - u}, std::pair{c1, u}}) {
     for (const auto& [node, across] : {std::pair{r, 1 - v}, std::pair{r1, v}}) {
-      if (along * across != 0) visit(line, node, along * across);
+      if (along * across == 0) continue;
+      columns_[0].ranges(line, node, node, one);
+      if (std::isnan(one[0].low)) continue;
+      parts.push_back({line, node, along * across});
+      sum += along * across;
     }
   }
+  const bool all = parts.size() == 4 || sum == 1;
+  for (const Part& each : parts) visit(each.line, each.node, all ? each.part : each.part / sum);
 }
 
 HeightRange ProbableView::eye_range() const {

@@ -92,10 +92,19 @@ NodeDraw RealisedColumns::node(int major, int minor) const {
   const Place at = place(major, minor);
   if (!is_learnt())
     return {NodeDraw::Kind::kBetween, {key(at), spread_of_model(at), terrain_.error.tails}, 0, 0};
-  if (major % 2 != 0 && minor % 2 != 0)
+  if (major % 2 != 0 && minor % 2 != 0) {
+    // Beside a hole the triangle that is known goes as far as the diagonal.
+    if (!is_whole(major / 2, minor / 2))
+      return {NodeDraw::Kind::kBetween, {key(at), spread_of_surface(at), terrain_.error.tails}, 0, 0};
     return {NodeDraw::Kind::kCentre, {key(at), 0, terrain_.error.tails}, rise(at), 0};
+  }
   const auto share = static_cast<float>(terrain_.error.surface->from_centres / 2);
   return {NodeDraw::Kind::kSide, {key(at), spread_of_surface(at), terrain_.error.tails}, rise(at), share};
+}
+
+bool RealisedColumns::is_whole(int major, int minor) const {
+  const Place c = place(major, minor + 1), d = place(major + 1, minor);
+  return !std::isnan(terrain_.mean.at(c.row, c.col)) && !std::isnan(terrain_.mean.at(d.row, d.col));
 }
 
 Lanes RealisedColumns::heights(int major, int minor, std::uint32_t first) const {
@@ -152,7 +161,7 @@ void RealisedColumns::ranges(int major, int from, int to, std::vector<HeightRang
     const float room = terrain_.largest_draw * most(major, n);
     here = {0.5f * (a.low + b.low), 0.5f * (a.high + b.high)};
     if (is_learnt()) {
-      if (m != next && k != k1) {
+      if (m != next && k != k1 && is_whole(m, k)) {
         const HeightRange c = range(m, k1), d = range(next, k);
         here = {0.5f * here.low + 0.25f * (c.low + d.low), 0.5f * here.high + 0.25f * (c.high + d.high)};
       }

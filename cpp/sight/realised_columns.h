@@ -93,6 +93,8 @@ class RealisedColumns {
   float spread_of_surface(const Place&) const;
   float rise(const Place&) const;
   HeightRange range(int major, int minor) const;
+  // Of the square whose first sample that is, the two off the NW-SE diagonal are known.
+  bool is_whole(int major, int minor) const;
   float most(int major, int minor) const;
 
   const OpenTerrain& terrain_;

@@ -198,3 +198,12 @@ def test_written_rasters_say_how_they_were_made(dem, tmp_path):
 def test_it_can_be_cancelled(dem):
     with pytest.raises(sb.Cancelled):
         sb.probable_viewshed(dem, place(30, 30), progress=lambda fraction: False)
+
+
+@pytest.mark.parametrize(("row", "col"), [(30.7, 30.3), (30.3, 30.1)])
+def test_an_eye_beside_a_hole_sees_the_rest(row, col):
+    """Of the four nodes around it those count that are known."""
+    heights = (np.random.default_rng(1).normal(size=(64, 64)) * 0.05 + 100).astype(np.float32)
+    heights[30, 31] = np.nan
+    found = sb.probable_viewshed(dem_of(heights), place(row, col), 20, 20, realisations=192)
+    assert found.verdict[40, 5] == 2 and np.nanmean(found.probability) > 0.6
