@@ -146,10 +146,11 @@ class ProbableViewshed(SightboundAlgorithm):
         return int(self._number(parameters, name, context))
 
     def _heights(self, parameters, context):
-        """Numbers between commas or semicolons."""
+        """Numbers between commas; between semicolons a comma is a decimal one."""
         text = self.parameterAsString(parameters, "HEIGHTS", context) or ""
         try:
-            heights = [float(one) for one in text.replace(";", ",").split(",") if one.strip()]
+            parts = text.replace(",", ".").split(";") if ";" in text else text.split(",")
+            heights = [float(one) for one in parts if one.strip()]
         except ValueError:
             raise bad_input("HEIGHTS", tr("is “{}”; give metres above ground, as 0.5, 2, 30.").format(text)) from None
         if given(parameters, "OUTPUT_HEIGHTS") and not heights:

@@ -44,6 +44,14 @@ def test_heights_have_bands(run, dem, observers, tmp_path):
     assert numpy.nanmean(bands[1]) > numpy.nanmean(bands[0])
 
 
+def test_a_decimal_comma_is_one_between_semicolons(run, dem, observers, tmp_path):
+    """As German and French keyboards write it: never other heights without a word."""
+    with_commas = look(run, dem, observers, HEIGHTS="0,5; 30", OUTPUT_HEIGHTS=str(tmp_path / "commas.tif"))
+    with_points = look(run, dem, observers, HEIGHTS="0.5; 30", OUTPUT_HEIGHTS=str(tmp_path / "points.tif"))
+    found, wanted = (scenes.read(one["OUTPUT_HEIGHTS"])[0] for one in (with_commas, with_points))
+    assert numpy.array_equal(found, wanted, equal_nan=True)
+
+
 def test_how_terrains_are_drawn(run, dem, observers):
     def drawn(**more):
         return scenes.read(look(run, dem, observers, VERTICAL_ACCURACY=2.0, **more)["OUTPUT"])[0]
