@@ -55,9 +55,11 @@ bool BoundedMarch::look_at(int line, const std::vector<int>& last_lines) {
     }
   }
   if (to < from) return !last_lines.empty();
-  first_node_ = from;
   widest_ = std::max(widest_, to - from + 1);
-  columns_.ranges(fan_.grid_major(fan_.major(line)), fan_.grid_minor(from), fan_.grid_minor(to), nodes_);
+  std::swap(nodes_, nodes_before_);
+  nodes_.first = from;
+  columns_.ranges(fan_.grid_major(fan_.major(line)), fan_.grid_minor(from), fan_.grid_minor(to),
+                  nodes_.ranges);
   return true;
 }
 
@@ -71,7 +73,7 @@ void BoundedMarch::ask_targets(int line, const Wanted& wanted, const ProbableEye
     if (!last_lines.empty() && line > last_lines[at(nearest)]) continue;
     const int row = fan_.row_of(line, n), col = fan_.col_of(line, n);
     if (const Layers layers = wanted(row, col))
-      judge({line, nearest, n, row, col, layers, 0, false}, nodes_[at(2 * n - first_node_)], eye);
+      judge({line, nearest, n, row, col, layers, 0, false}, nodes_.at(2 * n), eye);
   }
 }
 
@@ -110,21 +112,32 @@ void BoundedMarch::judge(const Target& asked, const HeightRange& ground, const P
   if (refinement_.at_target != Fineness::kNone && horizon.line >= 0) mark(horizon.line, asked.ray);
 }
 
+// Of ground between two nodes.
+HeightRange BoundedMarch::ground_at(const RayPlace& place, double part, const HeightRange& a,
+                                    const HeightRange& b) const {
+  const auto share = static_cast<float>(part);
+  const float room = fine_.most_across(place, part);
+  return {a.low + share * (b.low - a.low) - room, a.high + share * (b.high - a.high) + room};
+}
+
 void BoundedMarch::cross(int ray, int line) {
   Horizon& horizon = horizons_[at(ray)];
   const double minor = minors_[at(ray)], per_2r = fan_.per_2r(ray);
   const int before = fan_.node_before(minor);
-  const HeightRange &a = nodes_[at(before - first_node_)],
-                    &b = nodes_[at(fan_.node_behind(minor) - first_node_)];
-  const auto part = static_cast<float>(2 * minor - before);
   const RayPlace place = fan_.crossing(ray, line, minor);
-  const float room = fine_.most_across(place, 2 * minor - before);
-  const HeightRange ground{a.low + part * (b.low - a.low) - room, a.high + part * (b.high - a.high) + room};
+  const HeightRange ground =
+      ground_at(place, 2 * minor - before, nodes_.at(before), nodes_.at(fan_.node_behind(minor)));
   HeightRange rise = slope_range(ground, eye_, ray_slope(place.s, per_2r));
   if (const Fineness fineness = refinement_.from_eye(line); fineness != Fineness::kNone) {
     FinePlaces places;
     fine_.between(horizon.place, place, per_2r, fineness, places);
     rise.high = larger(fine_.highest(places, fineness, horizon.ground, ground, eye_), rise.high);
+  }
+  if (const auto row = horizon.line < 0 ? std::nullopt : row_between(horizon.place, place)) {
+    const HeightRange there =
+        ground_at(row->place, row->part, nodes_before_.at(row->node), nodes_.at(row->node));
+    const HeightRange over = slope_range(there, eye_, ray_slope(row->place.s, per_2r));
+    rise = {larger(over.low, rise.low), larger(over.high, rise.high)};
   }
   horizon.place = place;
   horizon.ground = ground;

@@ -85,6 +85,7 @@ class BoundedMarch {
   bool look_at(int line, const std::vector<int>& last_lines);
   void ask_targets(int line, const Wanted&, const ProbableEye&, const std::vector<int>& last_lines);
   void judge(const Target&, const HeightRange& ground, const ProbableEye&);
+  HeightRange ground_at(const RayPlace&, double part, const HeightRange& a, const HeightRange& b) const;
   void cross(int ray, int line);
   void keep_what_may_hide(int ray, float lowest_target);
   void mark(int line, int ray);
@@ -99,8 +100,12 @@ class BoundedMarch {
   std::vector<Horizon> horizons_;         // of the rays
   std::vector<std::vector<Peak>> peaks_;  // of the rays: not yet known to matter or not
   std::vector<double> minors_;            // where the rays cross the line at hand
-  std::vector<HeightRange> nodes_;        // of the line at hand
-  int first_node_ = 0;
+  struct NodeRanges {
+    std::vector<HeightRange> ranges;
+    int first = 0;
+    const HeightRange& at(int node) const { return ranges[static_cast<std::size_t>(node - first)]; }
+  };
+  NodeRanges nodes_, nodes_before_;  // of the line at hand and the one before
   int widest_ = 0;
 
   std::vector<Target> targets_;

@@ -35,6 +35,15 @@ std::vector<RayBlock> ray_blocks(const ProbableEye& eye) {
   return blocks;
 }
 
+std::optional<RowCrossing> row_between(const RayPlace& a, const RayPlace& b) {
+  const double low = 2 * std::min(a.minor, b.minor), high = 2 * std::max(a.minor, b.minor);
+  const double node = std::ceil(high) - 1;
+  if (node <= low) return {};
+  const double part = (node / 2 - a.minor) / (b.minor - a.minor);
+  return RowCrossing{{a.major + part * (b.major - a.major), node / 2, a.s + part * (b.s - a.s)},
+                     static_cast<int>(node), part};
+}
+
 RayFan::RayFan(const OpenTerrain& terrain, const ProbableEye& eye, double bend, const RayBlock& block)
     : transposed_(block.transposed),
       sign_(block.sign),

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "earth/observer_frames.h"
@@ -33,6 +34,15 @@ struct RayBlock {
 
 // All blocks of an eye. Every cell of his reach but the one he stands on belongs to one.
 std::vector<RayBlock> ray_blocks(const ProbableEye&);
+
+// Between two lines a ray may cross a row of nodes, those of that number: a share `part` of the way from the
+// first line's node to the second's.
+struct RowCrossing {
+  RayPlace place;
+  int node;  // half cells
+  double part;
+};
+std::optional<RowCrossing> row_between(const RayPlace& a, const RayPlace& b);
 
 class RayFan {
  public:

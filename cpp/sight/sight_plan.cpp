@@ -29,10 +29,10 @@ class Writer {
         fine_(fine),
         refinement_(refinement),
         stride_(std::bit_ceil(static_cast<unsigned>(march.widest() / 2 + 2))),
-        held_(6 * static_cast<std::size_t>(stride_), {kNowhere, kNowhere}),
+        held_(8 * static_cast<std::size_t>(stride_), {kNowhere, kNowhere}),
         places_(at(fan.rays()), fan.eye()) {
     plan_.rays = fan.rays();
-    plan_.slots = 6 * stride_;
+    plan_.slots = 8 * stride_;
   }
 
   SightPlan write(const std::function<std::uint32_t(int row, int col)>& item_of) {
@@ -49,7 +49,8 @@ class Writer {
         if (march_.may_decide(line, i)) add_crossing(line, i);
       }
       plan_.lines.push_back(
-          {count(plan_.samples), count(plan_.nodes), count(plan_.targets), count(plan_.crossings)});
+          {count(plan_.samples), count(plan_.nodes), count(plan_.targets), count(plan_.rows),
+           count(plan_.crossings)});
     }
     return std::move(plan_);
   }
@@ -68,13 +69,25 @@ class Writer {
     const double minor = fan_.minor(i, line), per_2r = fan_.per_2r(i);
     const int before = fan_.node_before(minor);
     const RayPlace place = fan_.crossing(i, line, minor);
+    const auto ray = static_cast<std::uint32_t>(i);
+    if (line > 0) {
+      const RayPlace from = fan_.crossing(i, line - 1, fan_.minor(i, line - 1));
+      if (const auto row = row_between(from, place))
+        plan_.rows.push_back(between_nodes(row->place, row->part, node(line - 1, row->node),
+                                           node(line, row->node), ray));
+    }
     const Fineness fineness = refinement_.from_eye(line);
-    const double part = 2 * minor - before;
-    plan_.crossings.push_back({ray_slope(place.s, per_2r), static_cast<float>(part),
-                               fine_.across(place, part), node(line, before),
-                               node(line, fan_.node_behind(minor)), static_cast<std::uint32_t>(i),
-                               add_fine(places_[at(i)], place, per_2r, fineness), fineness});
+    SightPlan::Crossing crossing{between_nodes(place, 2 * minor - before, node(line, before),
+                                               node(line, fan_.node_behind(minor)), ray),
+                                 add_fine(places_[at(i)], place, per_2r, fineness), fineness};
+    plan_.crossings.push_back(crossing);
     places_[at(i)] = place;
+  }
+
+  SightPlan::Place between_nodes(const RayPlace& place, double part, SightPlan::Slot a, SightPlan::Slot b,
+                                 std::uint32_t ray) const {
+    return {ray_slope(place.s, fan_.per_2r(static_cast<int>(ray))), static_cast<float>(part),
+            fine_.across(place, part), a, b, ray};
   }
 
   std::uint32_t add_fine(const RayPlace& a, const RayPlace& b, double per_2r, Fineness fineness) {
@@ -120,7 +133,7 @@ class Writer {
       made.e = centre(major - i, minor - j);
       made.f = centre(major + i, minor + j);
     }
-    made.slot = 4 * stride_ + unsigned(minor) % (2 * stride_);
+    made.slot = (4 + 2 * (unsigned(major) % 2)) * stride_ + unsigned(minor) % (2 * stride_);
     if (takes(made.slot, {major, minor})) plan_.nodes.push_back(made);
     return made.slot;
   }
@@ -168,6 +181,13 @@ SIGHTBOUND_INLINE std::uint16_t seen_over(const Lanes& horizon, const Lanes& gro
   return static_cast<std::uint16_t>(bits);
 }
 
+SIGHTBOUND_INLINE void draw_between_nodes(const SightPlan::Place& place, std::uint32_t first,
+                                          const Lanes* slots, Lanes& ground) {
+  const Lanes &a = slots[place.a], &b = slots[place.b];
+  draw_about(
+      place.across, first, [&](int l) { return a.v[l] + place.part * (b.v[l] - a.v[l]); }, ground);
+}
+
 struct Working {
   Lanes *slots, *horizons, *places;
 };
@@ -175,7 +195,7 @@ struct Working {
 SIGHTBOUND_VECTOR
 void carry_out(const SightPlan& plan, const Lanes& eye, const float* heights, std::uint32_t first,
                std::uint16_t open_holes, const Working& work, const SeenBits& seen) {
-  SightPlan::Line from{0, 0, 0, 0};
+  SightPlan::Line from{0, 0, 0, 0, 0};
   for (const SightPlan::Line& to : plan.lines) {
     for (; from.samples < to.samples; ++from.samples) {
       const SightPlan::Sample& sample = plan.samples[from.samples];
@@ -204,12 +224,16 @@ void carry_out(const SightPlan& plan, const Lanes& eye, const float* heights, st
         bits = static_cast<std::uint16_t>(bits | (target.behind_unknown ? over & open_holes : over));
       }
     }
+    for (; from.rows < to.rows; ++from.rows) {
+      const SightPlan::Place& row = plan.rows[from.rows];
+      Lanes ground;
+      draw_between_nodes(row, first, work.slots, ground);
+      raise(ground, eye, row.slope, work.horizons[row.ray]);
+    }
     for (; from.crossings < to.crossings; ++from.crossings) {
       const SightPlan::Crossing& crossing = plan.crossings[from.crossings];
-      const Lanes &a = work.slots[crossing.a], &b = work.slots[crossing.b];
       Lanes ground, &horizon = work.horizons[crossing.ray], &place = work.places[crossing.ray];
-      const auto between = [&](int l) { return a.v[l] + crossing.part * (b.v[l] - a.v[l]); };
-      draw_about(crossing.across, first, between, ground);
+      draw_between_nodes(crossing, first, work.slots, ground);
       raise_between(plan.fine.data() + crossing.fine, crossing.fineness, first, place, ground, eye, horizon);
       raise(ground, eye, crossing.slope, horizon);
       place = ground;

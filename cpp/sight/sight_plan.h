@@ -22,13 +22,17 @@ struct SightPlan {
     Slot a, b, c, d, e, f;  // its parents, in the order of NodeParents
     Slot slot;
   };
-  // A ray goes on to the next place.
-  struct Crossing {
+  // Of a ray: ground between two nodes, a share `part` of the way from a to b.
+  struct Place {
     RaySlope slope;
-    float part;  // of the way from a to b
+    float part;
     Departure across;
     Slot a, b;
-    std::uint32_t ray, fine;  // first of the places between the last crossing and this
+    std::uint32_t ray;
+  };
+  // The ray goes on to there.
+  struct Crossing : Place {
+    std::uint32_t fine;  // first of the places between the last crossing and this
     Fineness fineness;
   };
   struct Target {
@@ -41,13 +45,14 @@ struct SightPlan {
   };
   // Ends of what belongs to a line; it is carried out in this order.
   struct Line {
-    std::uint32_t samples, nodes, targets, crossings;
+    std::uint32_t samples, nodes, targets, rows, crossings;
   };
 
   std::vector<Line> lines;
   std::vector<Sample> samples;
   std::vector<Node> nodes;
   std::vector<Target> targets;
+  std::vector<Place> rows;  // between the line before and this
   std::vector<Crossing> crossings;
   std::vector<FinePlace> fine;
   int rays = 0;
