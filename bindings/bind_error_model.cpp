@@ -92,6 +92,8 @@ void bind_model(py::module_& m) {
       .def_readwrite("correlation_length", &ErrorModel::correlation_length)
       .def_readwrite("shared_bias", &ErrorModel::shared_bias)
       .def_readwrite("ridge_gain", &ErrorModel::ridge_gain)
+      .def_readwrite("level_variance", &ErrorModel::level_variance)
+      .def_readwrite("step_variance", &ErrorModel::step_variance)
       .def("set_vertical_rmse", &set_array<&ErrorModel::vertical_rmse>, py::arg("values").noconvert(),
            py::arg("flipped"))
       .def("set_geologic_variation", &set_array<&ErrorModel::geologic_variation>,
@@ -172,6 +174,8 @@ void bind_estimate(py::module_& m) {
       .def_readonly("ridge_gain", &Estimate::ridge_gain)
       .def_property_readonly("tails", [](const Estimate& e) { return name_of(e.tails); })
       .def_readonly("local_scale", &Estimate::local_scale)
+      .def_property_readonly("level_variance", [](const Estimate& e) { return e.steps.level; })
+      .def_property_readonly("step_variance", [](const Estimate& e) { return e.steps.step; })
       .def_readonly("self_check", &Estimate::self_check)
       .def_readonly("warnings", &Estimate::warnings);
   m.def(

@@ -101,6 +101,8 @@ def estimate_error(
         "ridge_gain": found.ridge_gain,
         "tails": found.tails,
         "local_scale": found.local_scale,
+        "level_variance": found.level_variance,
+        "step_variance": found.step_variance,
         "self_check": {name: getattr(found.self_check, name) for name in _QUANTILES},
         "warnings": list(found.warnings),
     }

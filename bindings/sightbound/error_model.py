@@ -45,6 +45,8 @@ class ErrorModel:
         samples_or_means: what a cell holds: "samples" (the height of its middle) or "means" (the mean over the cell).
             None or "auto": samples, unless estimated.
         ridge_gain: how far the truth stands above the surface, in units of its curvature (-2 to 2).
+        level_variance, step_variance: factors of the variance learnt from the DEM, where the samples around stand level
+            and where they step (0 to 10). None: 1, unless estimated.
 
     Raises:
         ValueError: a value out of range, or values that contradict each other.
@@ -74,6 +76,8 @@ class ErrorModel:
         shared_bias: float = _DEFAULTS["shared_bias"],
         samples_or_means: str | None = None,
         ridge_gain: float | None = None,
+        level_variance: float | None = None,
+        step_variance: float | None = None,
     ) -> None:
         model = core.ErrorModel()
         self._core, self._arrays, self._report = model, {}, {}
@@ -93,6 +97,10 @@ class ErrorModel:
             model.samples_or_means = arguments.word("samples_or_means", samples_or_means)
         if ridge_gain is not None:
             model.ridge_gain = arguments.number("ridge_gain", ridge_gain)
+        if level_variance is not None:
+            model.level_variance = arguments.number("level_variance", level_variance)
+        if step_variance is not None:
+            model.step_variance = arguments.number("step_variance", step_variance)
         if terrain_types is not None:
             types = arguments.path("terrain_types", terrain_types)
             table = quantities.class_table(terrain_table)
@@ -231,6 +239,16 @@ class ErrorModel:
     def ridge_gain(self) -> float | None:
         """How far the truth stands above the surface, in units of its curvature."""
         return self._core.ridge_gain
+
+    @property
+    def level_variance(self) -> float | None:
+        """Factor of the variance learnt from the DEM where the samples around stand level."""
+        return self._core.level_variance
+
+    @property
+    def step_variance(self) -> float | None:
+        """Factor of the variance learnt from the DEM where the samples around step."""
+        return self._core.step_variance
 
     @property
     def report(self) -> dict[str, Any]:

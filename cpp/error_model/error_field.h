@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "earth/georeference.h"
+#include "error_model/correlated_noise.h"
 #include "error_model/error_model.h"
 #include "error_model/fractal_surface.h"
+#include "error_model/step_variance.h"
 #include "terrain/grid.h"
 
 namespace sightbound {
@@ -56,11 +58,13 @@ struct ErrorField {
   std::vector<double> farthest;  // one per row: the largest distance to the sample within its cell, metres
   double larger_side_m = 0;      // L
   Tails tails = Tails::kNormal;  // of the error in units of sigma
+  CorrelatedNoise noise;         // of the measurements' part of the sampling error
 
   // Learnt from the DEM: what the terrain does between its samples, with amplitude + node share of it for
   // the unit. Of DEMs of means the sampling error holds what a mean leaves open at its own place.
   std::optional<FractalSurface> surface;
   double ridge_gain = 0;  // of the edges of `surface`
+  StepVariance steps;     // of what `surface` does between samples
 
   // The unit of `surface`, metres.
   double plain_per_amplitude() const { return surface ? 1 / (1 - surface->node) : 1; }

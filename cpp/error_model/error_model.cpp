@@ -14,6 +14,7 @@ constexpr double kLargestRange = 1e6;  // metres
 constexpr double kLeastExponent = 0.1, kLargestExponent = 2;
 constexpr double kLargestLength = 1e6;  // metres
 constexpr double kLargestRidgeGain = 2;
+constexpr double kLargestVariance = 10;  // of level_variance and step_variance
 
 std::string text(double value) {
   std::ostringstream out;
@@ -142,6 +143,8 @@ void ErrorModel::validate() const {
   if (terrain_types) validate_types(*terrain_types);
   require_between("correlation_length", correlation_length, 0, kLargestLength, " m");
   require_between("shared_bias", shared_bias, -kLargestError, kLargestError, " m");
+  if (level_variance) require_between("level_variance", *level_variance, 0, kLargestVariance, "");
+  if (step_variance) require_between("step_variance", *step_variance, 0, kLargestVariance, "");
   if (ridge_gain) require_between("ridge_gain", *ridge_gain, -kLargestRidgeGain, kLargestRidgeGain, "");
 }
 

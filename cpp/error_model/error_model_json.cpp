@@ -138,6 +138,8 @@ void read_nature(const Json& json, ErrorModel& model) {
     model.samples_or_means = cell_content_from(string(json["samples_or_means"], "samples_or_means"));
   }
   model.ridge_gain = optional_number(json, "ridge_gain");
+  model.level_variance = optional_number(json, "level_variance");
+  model.step_variance = optional_number(json, "step_variance");
 }
 
 void write_nature(const ErrorModel& model, Json& json) {
@@ -146,13 +148,15 @@ void write_nature(const ErrorModel& model, Json& json) {
   if (model.shared_bias != 0) json["shared_bias"] = model.shared_bias;
   if (model.samples_or_means) json["samples_or_means"] = name_of(*model.samples_or_means);
   if (model.ridge_gain) json["ridge_gain"] = *model.ridge_gain;
+  if (model.level_variance) json["level_variance"] = *model.level_variance;
+  if (model.step_variance) json["step_variance"] = *model.step_variance;
 }
 
 ErrorModel model_from(const Json& json) {
   require_known(json, "The model",
                 {kFormat, "vertical_rmse", "horizontal_rmse", "geologic_variation", "geologic_model",
                  "geologic_range", "growth_exponent", "terrain_types", "tails", "correlation_length",
-                 "shared_bias", "samples_or_means", "ridge_gain"});
+                 "shared_bias", "samples_or_means", "ridge_gain", "level_variance", "step_variance"});
   if (json.contains(kFormat) && json[kFormat] != kFormatVersion) {
     refuse(std::string(kFormat) + " is " + json[kFormat].dump() + "; this version of Sightbound reads " +
            std::to_string(kFormatVersion) + ".");

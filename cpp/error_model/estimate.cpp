@@ -232,9 +232,11 @@ void check_itself(const std::vector<Grid<float>>& blocks, double second_exponent
   if (out.rms_of_spacing[0] <= 0) return;
   SelfCheck check(std::clamp(second_exponent, kLeastExponent, kLargestExponent), out.rms_of_spacing[0]);
   for (const Grid<float>& block : blocks) check.add(block, progress);
+  check.finish();
   if (check.places() < kEnough) return;
   const auto q = [&](double share) { return check.quantile(share); };
   out.self_check = {check.places(), q(0.5), q(0.683), q(0.9), q(0.95), q(0.99)};
+  out.steps = check.steps();
   out.tails = check.tails();
   out.local_scale = check.scale();
 }
@@ -286,6 +288,8 @@ ErrorModel with_estimate(ErrorModel model, const Estimate& estimate) {
     if (!model.local_scale) model.local_scale = estimate.local_scale;
     if (!model.ridge_gain) model.ridge_gain = estimate.ridge_gain;
     if (!model.tails) model.tails = estimate.tails;
+    if (!model.level_variance) model.level_variance = estimate.steps.level;
+    if (!model.step_variance) model.step_variance = estimate.steps.step;
   }
   return model;
 }

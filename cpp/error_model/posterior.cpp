@@ -27,9 +27,20 @@ void for_rows(int rows, const Workers& workers, Progress& progress, const Row& r
   });
 }
 
+// Of errors at a sample and at one beside it.
+double neighbours_correlation(const CorrelatedNoise& noise) {
+  return 0.5 * (noise.correlation(0, 1) + noise.correlation(1, 0));
+}
+
+// Of the four errors around with each other, each with itself too.
+double four_correlation(const CorrelatedNoise& noise) {
+  return 0.25 + 0.125 * (noise.correlation(0, 2) + noise.correlation(2, 0)) + 0.5 * noise.correlation(1, 1);
+}
+
 void weigh_neighbours(const Grid<float>& heights, const ErrorField& error, const Workers& workers,
                       Progress& progress, Posterior& result) {
   const int rows = heights.rows(), cols = heights.cols();
+  const double along = neighbours_correlation(error.noise), among = four_correlation(error.noise);
   result.mean = Grid<float>(rows, cols);
   Grid<float> spread(rows, cols);
   for_rows(rows, workers, progress, [&](int r) {
@@ -42,12 +53,12 @@ void weigh_neighbours(const Grid<float>& heights, const ErrorField& error, const
       spread.at(r, c) = static_cast<float>(sigma);
       if (std::isnan(m) || sigma == 0) continue;
       const double p = amplitude * error.profile(error.larger_side_m, amplitude);
-      const double s2 = sigma * sigma, q2 = p * p + s2 / 4;
-      result.mean.at(r, c) = static_cast<float>(z + (m - z) * s2 / (s2 + q2));
-      spread.at(r, c) = static_cast<float>(sigma * std::sqrt(q2 / (s2 + q2)));
+      const double s2 = sigma * sigma, gain = s2 * (1 - along) / (p * p + s2 * (1 - 2 * along + among));
+      result.mean.at(r, c) = static_cast<float>(z + (m - z) * gain);
+      spread.at(r, c) = static_cast<float>(sigma * std::sqrt(1 - (1 - along) * gain));
     }
   });
-  result.spread = SampleField(std::move(spread));
+  (error.noise.is_independent() ? result.spread : result.shared) = SampleField(std::move(spread));
 }
 
 // From means to the terrain at their middles.

@@ -6,9 +6,13 @@
 // neighbours
 //   q^2 = p^2 + sigma^2 / 4                        error of m as a guess of the height
 //   mean = z + (m - z) sigma^2 / (sigma^2 + q^2)   spread^2 = sigma^2 q^2 / (sigma^2 + q^2)
-// (two independent witnesses, normal). Errors of different samples are taken as independent. Where cells are
-// means, ridges have been planed off and valleys filled: the terrain stands above a mean by a share of what
-// that stands above its neighbours (fractal_surface.h: sample).
+// (two witnesses, normal). Where errors of different samples are correlated (correlated_noise.h), rho between
+// neighbours, z - m tells less of them:
+//   q^2 + sigma^2 = p^2 + sigma^2 (1 - 2 rho + mean correlation of the four with each other)
+//   mean = z + (m - z) (1 - rho) sigma^2 / (q^2 + sigma^2)
+// and what is left of them stays correlated. Where cells are means, ridges have been planed off and valleys
+// filled: the terrain stands above a mean by a share of what that stands above its neighbours
+// (fractal_surface.h: sample).
 //
 // Half-way between samples. The terrain stands above the middle of two or four samples by a share of what
 // that middle stands above the samples farther out (fractal_surface.h: gain).
@@ -31,7 +35,9 @@ struct MiddleRises {
 struct Posterior {
   Grid<float> mean;    // metres, NaN = nodata; empty: the heights as they are
   SampleField spread;  // metres, one standard deviation
-  MiddleRises rises;   // empty without a surface learnt from the DEM
+  SampleField shared;  // the same, of correlated errors: beyond `spread`
+  bool has_shared() const { return !shared.is_constant() || shared.constant() != 0; }
+  MiddleRises rises;  // empty without a surface learnt from the DEM
 };
 
 // Where a neighbour is missing the measurement stands alone. O(cells).

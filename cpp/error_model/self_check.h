@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "error_model/step_variance.h"
 #include "error_model/tails.h"
 #include "terrain/grid.h"
 
@@ -15,13 +16,18 @@ namespace sightbound {
 class SelfCheck {
  public:
   // `exponent`: log2 of the residuals' growth from spacing 4 to 8; `typical_m`: see local_variation.
-  SelfCheck(double exponent, double typical_m) : exponent_(exponent), typical_m_(typical_m) {}
+  SelfCheck(double exponent, double typical_m);
 
   void add(const Grid<float>& block, Progress&);
+  // After the last block.
+  void finish();
 
   std::size_t places() const { return places_; }
   // Within +- this many predicted standard deviations lies a share of the errors; 0 without places.
   double quantile(double share) const;
+  // How the variance of the errors depends on the step between the samples that they lie between. What
+  // follows takes it as given.
+  StepVariance steps() const { return steps_; }
   // The distribution whose quantile of 99 % over that of 68.3 % is nearest.
   Tails tails() const;
   // What the predicted sd had to be multiplied by for 95 % to hold, half the way taken (its root: the next
@@ -29,11 +35,13 @@ class SelfCheck {
   double scale() const;
 
  private:
-  void count(double error, double sd);
+  void count(double error, double half_step, double sd);
 
   double exponent_, typical_m_;
   std::size_t places_ = 0;
-  std::vector<std::size_t> histogram_;
+  StepVariance steps_;
+  std::vector<std::size_t> by_step_;    // of errors over sd, class by class of steps
+  std::vector<std::size_t> histogram_;  // of errors over what steps_ leaves of it
 };
 
 }  // namespace sightbound

@@ -127,7 +127,8 @@ LineJudge::LineJudge(const DemSource& source, const LoadedTerrain& terrain, cons
             terrain.window().row,
             terrain.window().col,
             extras.whole_line ? extras.whole_line->seed : 0,
-            terrain.scene().error.surface ? &posterior_.rises : nullptr},
+            terrain.scene().error.surface ? &posterior_.rises : nullptr,
+            posterior_.has_shared() ? &posterior_.shared : nullptr},
       columns_(open_, false),
       rows_(open_, true) {}
 

@@ -158,12 +158,14 @@ class Behind {
                        ? Posterior()
                        : posterior(terrain.scene().heights, terrain.scene().error, workers, progress)),
         open_{posterior_.mean.empty() ? terrain.scene().heights : posterior_.mean,
-              is_perturbed_ ? terrain.scene().error.sampling : posterior_.spread,
+              is_perturbed_ && !perturbs_alike() ? terrain.scene().error.sampling : posterior_.spread,
               is_perturbed_ ? nothing_between_ : terrain.scene().error,
               terrain.window().row,
               terrain.window().col,
               options.seed,
               terrain.scene().error.surface && !is_perturbed_ ? &posterior_.rises : nullptr,
+              perturbs_alike() ? &terrain.scene().error.sampling
+                               : (posterior_.has_shared() ? &posterior_.shared : nullptr),
               largest_draw(terrain.scene().error.tails)} {}
   const OpenTerrain& open() const { return open_; }
 
@@ -173,8 +175,12 @@ class Behind {
     nothing.cell_sizes = error.cell_sizes;
     nothing.larger_side_m = error.larger_side_m;
     nothing.tails = error.tails;
+    nothing.noise = error.noise;
     return nothing;
   }
+
+  // All that is drawn is correlated.
+  bool perturbs_alike() const { return is_perturbed_ && !nothing_between_.noise.is_independent(); }
 
   const bool is_perturbed_;
   const ErrorField nothing_between_;

@@ -202,11 +202,13 @@ void add_geometry(ErrorField& field, const Job& job, const Georeference& georefe
         0.5 * std::max(std::hypot(cell.col_m, cell.row_m), std::hypot(before.col_m, before.row_m)));
   }
   field.larger_side_m = larger_cell_side(georeference, job.source.rows(), job.source.cols());
-  if (!from_dem(job.model)) return;
   const Window middle{0, job.source.rows() / 2, job.source.cols(), 1};
   const CellSize cell = ground_cell_sizes(georeference, middle).front();
+  field.noise = CorrelatedNoise(job.model.correlation_length, cell);
+  if (!from_dem(job.model)) return;
   field.surface = fractal_surface(*job.model.growth_exponent, content_of(job.model), cell.row_m / cell.col_m);
   field.ridge_gain = job.model.ridge_gain.value_or(0);
+  field.steps = {job.model.level_variance.value_or(1), job.model.step_variance.value_or(1)};
 }
 
 }  // namespace

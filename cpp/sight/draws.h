@@ -37,6 +37,16 @@ inline DrawKey draw_key(std::uint64_t seed, std::int64_t row, std::int64_t col) 
   return {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(x >> 32)};
 }
 
+// Shared by a tile; half cells.
+#ifndef TILE_HALF
+#define TILE_HALF 4
+#endif
+inline DrawKey tile_key(std::uint64_t seed, std::int64_t row, std::int64_t col) {
+  constexpr std::uint64_t kTileDraws = 0x74696c65;
+  const auto tile = [](std::int64_t half) { return (half + (std::int64_t{1} << 40)) / TILE_HALF; };
+  return draw_key(seed ^ kTileDraws, tile(row), tile(col));
+}
+
 // 32 bits of one realisation: two rounds of a mixing function with little bias (Wellons 2018).
 SIGHTBOUND_INLINE std::uint32_t draw_bits(const DrawKey& key, std::uint32_t realisation) {
   const auto mix = [](std::uint32_t x) {
@@ -115,6 +125,17 @@ SIGHTBOUND_INLINE float laplace_from(std::uint32_t bits) {
   const float x = (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1p-22f - 1;
   const float size = 0.70710678119f * minus_log(1 - std::abs(x));
   return std::copysign(size < kLargestOfHeavyTails ? size : kLargestOfHeavyTails, x);
+}
+
+SIGHTBOUND_INLINE float laplace_scale_from(std::uint32_t bits) {
+  const float x = (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1p-23f;
+  return std::sqrt(minus_log(x));
+}
+SIGHTBOUND_INLINE float student_scale_from(std::uint32_t bits) {
+  const float n = normal_from(bits);
+  const float w = 0.95555556f + 0.21081851f * n;
+  const float c = w > 0.33f ? w : 0.33f;
+  return std::sqrt(0.6f / (c * c * c));
 }
 
 // Student's t of five degrees of freedom over its standard deviation, from a normal draw: a polynomial whose

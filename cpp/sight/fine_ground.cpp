@@ -36,6 +36,8 @@ FineGround::FineGround(const OpenTerrain& terrain, bool transposed, int base_row
       transposed_(transposed),
       base_row_(base_row),
       base_col_(base_col),
+      steps_(is_learnt() ? terrain.error.steps : StepVariance{}),
+      most_(terrain.largest_draw * static_cast<float>(steps_.largest_factor())),
       half_across_(terrain.error.larger_side_m / 4),
       across_per_amplitude_(crossings ? per_amplitude(half_across_) : 0) {}
 
@@ -48,16 +50,36 @@ DrawKey FineGround::key_of(double row, double col, std::uint64_t kind) const {
                   eighth(col, terrain_.col + base_col_));
 }
 
+DrawKey FineGround::scale_of(double row, double col) const {
+  const auto half = [](double x, std::int64_t base) {
+    return static_cast<std::int64_t>(std::floor(2 * x)) + 2 * base;
+  };
+  return tile_key(terrain_.seed, half(row, terrain_.row + base_row_), half(col, terrain_.col + base_col_));
+}
+
 Departure FineGround::across(const RayPlace& place, double part) const {
-  return {key_of(row_of(place), col_of(place), kCrossingDraws), spread_across(place, part),
-          terrain_.error.tails};
+  return {key_of(row_of(place), col_of(place), kCrossingDraws), scale_of(row_of(place), col_of(place)),
+          spread_across(place, part), terrain_.error.tails};
 }
 
 Departure FineGround::inside(const RayPlace& place, double along, double across) const {
-  const double middle = spread(row_of(place), col_of(place), half_across_, across_per_amplitude_);
+  const double middle = spread(row_of(place), col_of(place), half_across_, across_per_amplitude_) *
+                        step_factor(row_of(place), col_of(place));
   const double parts = 4 * along * (1 - along) + 4 * across * (1 - across);
-  return {key_of(row_of(place), col_of(place), kInsideDraws), static_cast<float>(middle * std::sqrt(parts)),
-          terrain_.error.tails};
+  return {key_of(row_of(place), col_of(place), kInsideDraws), scale_of(row_of(place), col_of(place)),
+          static_cast<float>(middle * std::sqrt(parts)), terrain_.error.tails};
+}
+
+// As the samples around step.
+double FineGround::step_factor(double row, double col) const {
+  const int rows = terrain_.mean.rows(), cols = terrain_.mean.cols();
+  const auto within = [](double x, int base, int count) {
+    return std::clamp(base + static_cast<int>(std::floor(x)), 0, count - 1);
+  };
+  const int r = within(row, base_row_, rows), c = within(col, base_col_, cols);
+  return steps_.is_even()
+             ? 1
+             : factor_between(terrain_, r, c, std::min(r + 1, rows - 1), std::min(c + 1, cols - 1));
 }
 
 float FineGround::spread_across(const RayPlace& place, double part) const {
@@ -68,9 +90,9 @@ float FineGround::spread_across(const RayPlace& place, double part) const {
 FinePlace FineGround::middle(const RayPlace& a, const RayPlace& b, double per_2r) const {
   const RayPlace place = half_way(a, b);
   const double row = row_of(place), col = col_of(place), half_m = 0.5 * std::abs(b.s - a.s);
-  return {
-      {key_of(row, col, kFineDraws), spread(row, col, half_m, per_amplitude(half_m)), terrain_.error.tails},
-      ray_slope(place.s, per_2r)};
+  return {{key_of(row, col, kFineDraws), scale_of(row, col), spread(row, col, half_m, per_amplitude(half_m)),
+           terrain_.error.tails},
+          ray_slope(place.s, per_2r)};
 }
 
 void FineGround::between(const RayPlace& a, const RayPlace& b, double per_2r, Fineness fineness,
@@ -86,7 +108,7 @@ void FineGround::between(const RayPlace& a, const RayPlace& b, double per_2r, Fi
 float FineGround::highest(const FinePlaces& places, Fineness fineness, const HeightRange& a,
                           const HeightRange& b, const HeightRange& eye) const {
   const auto between = [&](const FinePlace& place, const HeightRange& from, const HeightRange& to) {
-    const float most = terrain_.largest_draw * place.draw.spread;
+    const float most = most_ * place.draw.spread;
     return HeightRange{0.5f * (from.low + to.low) - most, 0.5f * (from.high + to.high) + most};
   };
   const auto rise = [&](const FinePlace& place, const HeightRange& ground) {
@@ -101,7 +123,7 @@ float FineGround::highest(const FinePlaces& places, Fineness fineness, const Hei
 double FineGround::per_amplitude(double half_m) const {
   const ErrorField& error = terrain_.error;
   const GrowthProfile& profile = error.profile;
-  if (!error.surface || !terrain_.rises) {
+  if (!is_learnt()) {
     const bool by_amplitude = profile.shape == GeologicShape::kGaussian && profile.range_m == 0;
     return by_amplitude ? NAN : profile(half_m, 0);
   }

@@ -42,20 +42,24 @@ void draw_ground(const LineInDoubt& line, std::uint32_t first, Realised& drawn) 
   }
   const std::vector<NodePlace>& places = line.over.places;
   for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto node = [&](std::size_t n) -> const Lanes& { return drawn.nodes[at(places[i].index[n])]; };
+    if (places[i].nodes == 2) {
+      draw_on_way(line.across[i], line.steps, first, node(0), node(1), places[i].weight[1], drawn.ground[i]);
+      continue;
+    }
     Lanes between;
     for (int l = 0; l < kLanes; ++l)
       between.v[l] = places[i].known ? 0 : std::numeric_limits<float>::quiet_NaN();
     for (std::size_t n = 0; n < at(places[i].nodes); ++n) {
-      const Lanes& node = drawn.nodes[at(places[i].index[n])];
-      for (int l = 0; l < kLanes; ++l) between.v[l] += places[i].weight[n] * node.v[l];
+      for (int l = 0; l < kLanes; ++l) between.v[l] += places[i].weight[n] * node(n).v[l];
     }
     draw_about(
         line.across[i], first, [&](int l) { return between.v[l]; }, drawn.ground[i]);
   }
   for (std::size_t i = 0; i < line.fine.size(); ++i) {
     const FineHalf& half = line.fine[i];
-    draw_between(half.draw, first, drawn.ground[at(half.a)], drawn.ground[at(half.b)],
-                 drawn.ground[places.size() + i]);
+    draw_on_way(half.draw, line.steps, first, drawn.ground[at(half.a)], drawn.ground[at(half.b)], 0.5f,
+                drawn.ground[places.size() + i]);
   }
   const Lanes &eye = drawn.ground.front(), &target = drawn.ground[places.size() - 1];
   for (int l = 0; l < kLanes; ++l) {
@@ -82,14 +86,17 @@ std::uint32_t below(const DoubtfulPlace& place, const Lanes& ground, const Lanes
 LineInDoubt::LineInDoubt(const Scene& scene, const OpenTerrain& terrain, const RealisedColumns& columns,
                          const Eye& eye, const Target& target, const LineDoubt& doubt)
     : over(terrain.mean, eye, target),
-      normal(scene.error.tails == Tails::kNormal),
+      normal(scene.error.tails == Tails::kNormal && !terrain.shared),
       seed(terrain.seed),
       datum(std::floor(eye.height)),
       eye_ground(doubt.eye_ground - datum),
       target_ground(doubt.target_ground - datum) {
   if (over.places.empty()) return;
   find_nodes(columns);
-  find_fine({terrain, over.transposed, eye.base_row, eye.base_col});
+  const FineGround ground(terrain, over.transposed, eye.base_row, eye.base_col);
+  steps = ground.steps();
+  normal = normal && steps.is_even();
+  find_fine(ground);
   std::vector<bool> known;
   for (const NodePlace& place : over.places) known.push_back(place.known);
   for (const FineHalf& half : fine) known.push_back(known[at(half.a)] && known[at(half.b)]);

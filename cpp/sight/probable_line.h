@@ -59,7 +59,8 @@ struct LineInDoubt {
   double row(std::size_t i) const { return over.transposed ? where[i].major : where[i].minor; }
 
   LineOverNodes over;
-  bool normal;  // all that is drawn
+  bool normal;  // all that is drawn: independent, and no draw's spread depends on another
+  StepVariance steps;
   std::uint64_t seed;
   double datum;
   double eye_ground, target_ground;  // of the DEM at the ends

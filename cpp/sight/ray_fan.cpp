@@ -41,7 +41,8 @@ std::optional<RowCrossing> row_between(const RayPlace& a, const RayPlace& b) {
   if (node <= low) return {};
   const double part = (node / 2 - a.minor) / (b.minor - a.minor);
   return RowCrossing{{a.major + part * (b.major - a.major), node / 2, a.s + part * (b.s - a.s)},
-                     static_cast<int>(node), part};
+                     static_cast<int>(node),
+                     part};
 }
 
 RayFan::RayFan(const OpenTerrain& terrain, const ProbableEye& eye, double bend, const RayBlock& block)

@@ -19,6 +19,61 @@ double half_way(const CellSize& cell, Way way) {
 
 }  // namespace
 
+namespace {
+
+float mean_amplitude(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
+  const SampleField& amplitude = terrain.error.amplitude;
+  return 0.25f * ((amplitude.at(r, c) + amplitude.at(r1, c1)) + (amplitude.at(r, c1) + amplitude.at(r1, c)));
+}
+
+}  // namespace
+
+double factor_between(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
+  if (terrain.error.steps.is_even()) return 1;
+  const Grid<float>& z = terrain.mean;
+  const auto [low, high] = std::minmax({z.at(r, c), z.at(r, c1), z.at(r1, c), z.at(r1, c1)});
+  return terrain.error.steps.factor(
+      0.5 * (high - low), mean_amplitude(terrain, r, c, r1, c1) * terrain.error.plain_per_amplitude());
+}
+
+float amplitude_between(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
+  return mean_amplitude(terrain, r, c, r1, c1) * static_cast<float>(factor_between(terrain, r, c, r1, c1));
+}
+
+SIGHTBOUND_VECTOR
+void add_shared(const SharedDraw& draw, std::uint32_t first, Lanes& out) {
+  constexpr std::uint64_t kSharedDraws = 0x73686172;
+  const OpenTerrain& terrain = *draw.terrain;
+  const CorrelatedNoise& noise = terrain.error.noise;
+  const std::int64_t row = terrain.row + draw.row, col = terrain.col + draw.col;
+  Lanes sum{};
+  const auto add = [&](const DrawKey& key, double weight) {
+    const auto w = static_cast<float>(weight);
+    for (int l = 0; l < kLanes; ++l)
+      sum.v[l] += w * normal_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
+  };
+  std::uint64_t seed = terrain.seed ^ kSharedDraws;
+  add(draw_key(seed, row, col), noise.own);
+  for (const CorrelatedNoise::Lattice& lattice : noise.lattices) {
+    seed = mixed(seed);
+    const double v = static_cast<double>(row) / lattice.rows, u = static_cast<double>(col) / lattice.cols;
+    const double v0 = std::floor(v), u0 = std::floor(u), v1 = v - v0, u1 = u - u0;
+    const double size = std::hypot(v1, 1 - v1) * std::hypot(u1, 1 - u1);
+    for (const int i : {0, 1}) {
+      for (const int j : {0, 1}) {
+        const double part = (i ? v1 : 1 - v1) * (j ? u1 : 1 - u1);
+        if (part != 0)
+          add(draw_key(seed, static_cast<std::int64_t>(v0) + i, static_cast<std::int64_t>(u0) + j),
+              lattice.weight * part / size);
+      }
+    }
+  }
+  for (int l = 0; l < kLanes; ++l) {
+    const float least = sum.v[l] > -kLargestDraw ? sum.v[l] : -kLargestDraw;
+    out.v[l] += draw.spread * (least < kLargestDraw ? least : kLargestDraw);
+  }
+}
+
 RealisedColumns::RealisedColumns(const OpenTerrain& terrain, bool transposed)
     : terrain_(terrain),
       transposed_(transposed),
@@ -44,6 +99,10 @@ DrawKey RealisedColumns::key(const Place& at) const {
   return draw_key(terrain_.seed, 2 * terrain_.row + at.row, 2 * terrain_.col + at.col);
 }
 
+DrawKey RealisedColumns::scale(const Place& at) const {
+  return tile_key(terrain_.seed, 2 * terrain_.row + at.row, 2 * terrain_.col + at.col);
+}
+
 // The spread at a node that is no sample: of the error between the two that it lies between.
 float RealisedColumns::spread_of_model(const Place& node) const {
   const int r = node.row / 2, c = node.col / 2, r1 = (node.row + 1) / 2, c1 = (node.col + 1) / 2;
@@ -58,16 +117,11 @@ float RealisedColumns::spread_of_model(const Place& node) const {
 }
 
 float RealisedColumns::spread_of_surface(const Place& node) const {
-  const SampleField& amplitude = terrain_.error.amplitude;
   const int rows = terrain_.mean.rows(), cols = terrain_.mean.cols();
   const int r = std::max(node.row, 0) / 2, c = std::max(node.col, 0) / 2;
   const int r1 = std::min((node.row + 1) / 2, rows - 1), c1 = std::min((node.col + 1) / 2, cols - 1);
-  if (node.row % 2 == 0)
-    return static_cast<float>(row_edge_ * 0.5) * (amplitude.at(r, c) + amplitude.at(r, c1));
-  if (node.col % 2 == 0)
-    return static_cast<float>(col_edge_ * 0.5) * (amplitude.at(r, c) + amplitude.at(r1, c));
-  return static_cast<float>(centre_ * 0.25) *
-         ((amplitude.at(r, c) + amplitude.at(r, c1)) + (amplitude.at(r1, c) + amplitude.at(r1, c1)));
+  const double spread = node.row % 2 == 0 ? row_edge_ : (node.col % 2 == 0 ? col_edge_ : centre_);
+  return static_cast<float>(spread) * amplitude_between(terrain_, r, c, r1, c1);
 }
 
 float RealisedColumns::rise(const Place& node) const {
@@ -79,27 +133,34 @@ float RealisedColumns::rise(const Place& node) const {
 
 SampleDraw RealisedColumns::sample(int major, int minor) const {
   const Place at = place(2 * major, 2 * minor);
-  return {{key(at), terrain_.spread.at(at.row / 2, at.col / 2), terrain_.error.tails},
-          terrain_.mean.at(at.row / 2, at.col / 2)};
+  const int row = at.row / 2, col = at.col / 2;
+  SampleDraw draw{{key(at), scale(at), terrain_.spread.at(row, col), terrain_.error.tails},
+                  terrain_.mean.at(row, col)};
+  if (terrain_.shared) draw.shared = {&terrain_, row, col, terrain_.shared->at(row, col)};
+  return draw;
 }
 
 SampleDraw RealisedColumns::centre(int major, int minor) const {
   const Place at = place(major, minor);
-  return {{key(at), spread_of_surface(at), terrain_.error.tails}, 0};
+  return {{key(at), scale(at), spread_of_surface(at), terrain_.error.tails}, 0};
 }
 
 NodeDraw RealisedColumns::node(int major, int minor) const {
   const Place at = place(major, minor);
   if (!is_learnt())
-    return {NodeDraw::Kind::kBetween, {key(at), spread_of_model(at), terrain_.error.tails}, 0, 0};
+    return {NodeDraw::Kind::kBetween, {key(at), scale(at), spread_of_model(at), terrain_.error.tails}, 0, 0};
   if (major % 2 != 0 && minor % 2 != 0) {
     // Beside a hole the triangle that is known goes as far as the diagonal.
     if (!is_whole(major / 2, minor / 2))
-      return {NodeDraw::Kind::kBetween, {key(at), spread_of_surface(at), terrain_.error.tails}, 0, 0};
-    return {NodeDraw::Kind::kCentre, {key(at), 0, terrain_.error.tails}, rise(at), 0};
+      return {
+          NodeDraw::Kind::kBetween, {key(at), scale(at), spread_of_surface(at), terrain_.error.tails}, 0, 0};
+    return {NodeDraw::Kind::kCentre, {key(at), scale(at), 0, terrain_.error.tails}, rise(at), 0};
   }
   const auto share = static_cast<float>(terrain_.error.surface->from_centres / 2);
-  return {NodeDraw::Kind::kSide, {key(at), spread_of_surface(at), terrain_.error.tails}, rise(at), share};
+  return {NodeDraw::Kind::kSide,
+          {key(at), scale(at), spread_of_surface(at), terrain_.error.tails},
+          rise(at),
+          share};
 }
 
 bool RealisedColumns::is_whole(int major, int minor) const {
@@ -131,7 +192,8 @@ Lanes RealisedColumns::heights(int major, int minor, std::uint32_t first) const 
 HeightRange RealisedColumns::range(int major, int minor) const {
   const Place at = place(major, minor);
   const float mean = terrain_.mean.at(at.row, at.col),
-              most = terrain_.largest_draw * terrain_.spread.at(at.row, at.col);
+              shared = terrain_.shared ? terrain_.shared->at(at.row, at.col) : 0,
+              most = terrain_.largest_draw * terrain_.spread.at(at.row, at.col) + kLargestDraw * shared;
   return {mean - most, mean + most};
 }
 

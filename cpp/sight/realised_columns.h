@@ -30,9 +30,15 @@ struct OpenTerrain {
   const ErrorField& error;        // between them
   std::int64_t row = 0, col = 0;  // of the grid's first sample in the whole raster
   std::uint64_t seed = 0;
-  const MiddleRises* rises = nullptr;  // with error.surface: of that
-  float largest_draw = kLargestDraw;   // in standard deviations; a larger one only costs time
+  const MiddleRises* rises = nullptr;   // with error.surface: of that
+  const SampleField* shared = nullptr;  // spread of errors that are correlated by error.noise
+  float largest_draw = kLargestDraw;    // in standard deviations; a larger one only costs time
 };
+
+// Of a learnt error between up to four samples, those of a cell side or a square: its amplitude, and the
+// factor for how they step, which the amplitude has in it.
+float amplitude_between(const OpenTerrain&, int row, int col, int row1, int col1);
+double factor_between(const OpenTerrain&, int row, int col, int row1, int col1);
 
 // Of all realisations, metres; NaN where terrain is not known.
 struct HeightRange {
@@ -41,15 +47,23 @@ struct HeightRange {
 
 // A number about 0.
 struct Departure {
-  DrawKey key;
+  DrawKey key, scale;
   float spread;
   Tails tails;
+};
+
+// A number about 0 that other samples near share in part; `terrain` null: none.
+struct SharedDraw {
+  const OpenTerrain* terrain = nullptr;
+  int row = 0, col = 0;
+  float spread = 0;
 };
 
 // A number about another: the height at a sample.
 struct SampleDraw {
   Departure own;
   float mean;
+  SharedDraw shared{};
 };
 
 // The height at a node that is no sample, given the samples a, b (c, d) around it and what was drawn of the
@@ -88,6 +102,7 @@ class RealisedColumns {
   };
   Place place(int major, int minor) const { return transposed_ ? Place{major, minor} : Place{minor, major}; }
   DrawKey key(const Place& at) const;
+  DrawKey scale(const Place& at) const;
   bool is_learnt() const { return centre_ != 0; }
   float spread_of_model(const Place&) const;
   float spread_of_surface(const Place&) const;
@@ -111,24 +126,50 @@ SIGHTBOUND_INLINE void draw_about(const Departure& own, std::uint32_t first, con
     for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l);
     return;
   }
+  const auto normal = [&](int l) {
+    return normal_from(draw_bits(own.key, first + static_cast<std::uint32_t>(l)));
+  };
+  const auto scale = [&](int l) { return draw_bits(own.scale, first + static_cast<std::uint32_t>(l)); };
   const auto add = [&](const auto& from) {
     for (int l = 0; l < kLanes; ++l) {
-      const std::uint32_t bits = draw_bits(own.key, first + static_cast<std::uint32_t>(l));
-      out.v[l] = middle(l) + own.spread * from(bits);
+      const float x = from(l);
+      const float least = x > -kLargestOfHeavyTails ? x : -kLargestOfHeavyTails;
+      out.v[l] = middle(l) + own.spread * (least < kLargestOfHeavyTails ? least : kLargestOfHeavyTails);
     }
   };
   if (own.tails == Tails::kNormal) {
-    add([](std::uint32_t bits) { return normal_from(bits); });
+    for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l) + own.spread * normal(l);
   } else if (own.tails == Tails::kLaplace) {
-    add([](std::uint32_t bits) { return laplace_from(bits); });
+    add([&](int l) { return normal(l) * laplace_scale_from(scale(l)); });
   } else {
-    add([](std::uint32_t bits) { return student_from(bits); });
+    add([&](int l) { return normal(l) * student_scale_from(scale(l)); });
   }
 }
+
+// Adds what is drawn.
+void add_shared(const SharedDraw&, std::uint32_t first, Lanes&);
 
 SIGHTBOUND_INLINE void draw(const SampleDraw& sample, std::uint32_t first, Lanes& out) {
   draw_about(
       sample.own, first, [&](int) { return sample.mean; }, out);
+  if (sample.shared.terrain) add_shared(sample.shared, first, out);
+}
+
+// A share `part` of the way from one drawn height to another: little departs from the line between them where
+// they are level.
+SIGHTBOUND_INLINE void draw_on_way(const Departure& own, const StepVariance& steps, std::uint32_t first,
+                                   const Lanes& a, const Lanes& b, float part, Lanes& out) {
+  const auto middle = [&](int l) { return a.v[l] + part * (b.v[l] - a.v[l]); };
+  if (steps.is_even() || own.spread == 0) return draw_about(own, first, middle, out);
+  const auto level = static_cast<float>(steps.level), step = static_cast<float>(steps.step);
+  const float s2 = own.spread * own.spread, share = part * (1 - part);
+  Lanes departure;
+  draw_about(
+      own, first, [](int) { return 0.0f; }, departure);
+  for (int l = 0; l < kLanes; ++l) {
+    const float rise = b.v[l] - a.v[l], g2 = share * rise * rise;
+    out.v[l] = middle(l) + std::sqrt((level * s2 + step * g2) / (s2 + g2)) * departure.v[l];
+  }
 }
 
 SIGHTBOUND_INLINE void draw_between(const Departure& own, std::uint32_t first, const Lanes& a, const Lanes& b,

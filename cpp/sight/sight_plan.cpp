@@ -31,6 +31,7 @@ class Writer {
         stride_(std::bit_ceil(static_cast<unsigned>(march.widest() / 2 + 2))),
         held_(8 * static_cast<std::size_t>(stride_), {kNowhere, kNowhere}),
         places_(at(fan.rays()), fan.eye()) {
+    plan_.steps = fine.steps();
     plan_.rays = fan.rays();
     plan_.slots = 8 * stride_;
   }
@@ -48,9 +49,8 @@ class Writer {
       for (int i = 0; i < fan_.rays(); ++i) {
         if (march_.may_decide(line, i)) add_crossing(line, i);
       }
-      plan_.lines.push_back(
-          {count(plan_.samples), count(plan_.nodes), count(plan_.targets), count(plan_.rows),
-           count(plan_.crossings)});
+      plan_.lines.push_back({count(plan_.samples), count(plan_.nodes), count(plan_.targets),
+                             count(plan_.rows), count(plan_.crossings)});
     }
     return std::move(plan_);
   }
@@ -73,8 +73,8 @@ class Writer {
     if (line > 0) {
       const RayPlace from = fan_.crossing(i, line - 1, fan_.minor(i, line - 1));
       if (const auto row = row_between(from, place))
-        plan_.rows.push_back(between_nodes(row->place, row->part, node(line - 1, row->node),
-                                           node(line, row->node), ray));
+        plan_.rows.push_back(
+            between_nodes(row->place, row->part, node(line - 1, row->node), node(line, row->node), ray));
     }
     const Fineness fineness = refinement_.from_eye(line);
     SightPlan::Crossing crossing{between_nodes(place, 2 * minor - before, node(line, before),
@@ -86,8 +86,12 @@ class Writer {
 
   SightPlan::Place between_nodes(const RayPlace& place, double part, SightPlan::Slot a, SightPlan::Slot b,
                                  std::uint32_t ray) const {
-    return {ray_slope(place.s, fan_.per_2r(static_cast<int>(ray))), static_cast<float>(part),
-            fine_.across(place, part), a, b, ray};
+    return {ray_slope(place.s, fan_.per_2r(static_cast<int>(ray))),
+            static_cast<float>(part),
+            fine_.across(place, part),
+            a,
+            b,
+            ray};
   }
 
   std::uint32_t add_fine(const RayPlace& a, const RayPlace& b, double per_2r, Fineness fineness) {
@@ -158,16 +162,17 @@ SIGHTBOUND_INLINE void raise(const Lanes& ground, const Lanes& eye, const RaySlo
 }
 
 // By what lies between two places.
-SIGHTBOUND_INLINE void raise_between(const FinePlace* places, Fineness fineness, std::uint32_t first,
-                                     const Lanes& a, const Lanes& b, const Lanes& eye, Lanes& horizon) {
+SIGHTBOUND_INLINE void raise_between(const FinePlace* places, Fineness fineness, const StepVariance& steps,
+                                     std::uint32_t first, const Lanes& a, const Lanes& b, const Lanes& eye,
+                                     Lanes& horizon) {
   if (fineness == Fineness::kNone) return;
   Lanes half, quarter;
-  draw_between(places[0].draw, first, a, b, half);
+  draw_on_way(places[0].draw, steps, first, a, b, 0.5f, half);
   raise(half, eye, places[0].slope, horizon);
   if (fineness == Fineness::kHalves) return;
-  draw_between(places[1].draw, first, a, half, quarter);
+  draw_on_way(places[1].draw, steps, first, a, half, 0.5f, quarter);
   raise(quarter, eye, places[1].slope, horizon);
-  draw_between(places[2].draw, first, half, b, quarter);
+  draw_on_way(places[2].draw, steps, first, half, b, 0.5f, quarter);
   raise(quarter, eye, places[2].slope, horizon);
 }
 
@@ -179,13 +184,6 @@ SIGHTBOUND_INLINE std::uint16_t seen_over(const Lanes& horizon, const Lanes& gro
     bits |= rise >= horizon.v[l] ? 1u << l : 0u;
   }
   return static_cast<std::uint16_t>(bits);
-}
-
-SIGHTBOUND_INLINE void draw_between_nodes(const SightPlan::Place& place, std::uint32_t first,
-                                          const Lanes* slots, Lanes& ground) {
-  const Lanes &a = slots[place.a], &b = slots[place.b];
-  draw_about(
-      place.across, first, [&](int l) { return a.v[l] + place.part * (b.v[l] - a.v[l]); }, ground);
 }
 
 struct Working {
@@ -215,8 +213,8 @@ void carry_out(const SightPlan& plan, const Lanes& eye, const float* heights, st
         highest = larger(heights[std::countr_zero(layers)], highest);
       if (seen_over(before, ground, highest, eye, target.slope) == 0) continue;
       Lanes horizon = before;
-      raise_between(plan.fine.data() + target.fine, target.fineness, first, work.places[target.ray], ground,
-                    eye, horizon);
+      raise_between(plan.fine.data() + target.fine, target.fineness, plan.steps, first,
+                    work.places[target.ray], ground, eye, horizon);
       for (unsigned layers = target.layers; layers != 0; layers &= layers - 1) {
         const int l = std::countr_zero(layers);
         std::uint16_t& bits = seen.bits[(target.item + static_cast<std::size_t>(l)) * seen.stride];
@@ -227,14 +225,16 @@ void carry_out(const SightPlan& plan, const Lanes& eye, const float* heights, st
     for (; from.rows < to.rows; ++from.rows) {
       const SightPlan::Place& row = plan.rows[from.rows];
       Lanes ground;
-      draw_between_nodes(row, first, work.slots, ground);
+      draw_on_way(row.across, plan.steps, first, work.slots[row.a], work.slots[row.b], row.part, ground);
       raise(ground, eye, row.slope, work.horizons[row.ray]);
     }
     for (; from.crossings < to.crossings; ++from.crossings) {
       const SightPlan::Crossing& crossing = plan.crossings[from.crossings];
       Lanes ground, &horizon = work.horizons[crossing.ray], &place = work.places[crossing.ray];
-      draw_between_nodes(crossing, first, work.slots, ground);
-      raise_between(plan.fine.data() + crossing.fine, crossing.fineness, first, place, ground, eye, horizon);
+      draw_on_way(crossing.across, plan.steps, first, work.slots[crossing.a], work.slots[crossing.b],
+                  crossing.part, ground);
+      raise_between(plan.fine.data() + crossing.fine, crossing.fineness, plan.steps, first, place, ground,
+                    eye, horizon);
       raise(ground, eye, crossing.slope, horizon);
       place = ground;
     }

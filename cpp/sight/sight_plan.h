@@ -55,6 +55,7 @@ struct SightPlan {
   std::vector<Place> rows;  // between the line before and this
   std::vector<Crossing> crossings;
   std::vector<FinePlace> fine;
+  StepVariance steps;  // of what departs between two places
   int rays = 0;
   Slot slots = 0;
 };
