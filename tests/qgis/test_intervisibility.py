@@ -44,6 +44,19 @@ def test_each_two_once(run, dem, masts, log):
         assert line["critical_share"] * line["distance"] == pytest.approx(line["critical_distance"])
 
 
+def test_critical_places(run, dem, masts):
+    results = run("intervisibility", INPUT=dem, POINTS_A=masts, OUTPUT_CRITICAL="memory:", **COMMON)
+    judged = [line for line in results["OUTPUT"].getFeatures() if line["status"] == "ok"]
+    places = list(results["OUTPUT_CRITICAL"].getFeatures())
+    assert len(judged) == len(places) == 3
+    for line, place in zip(judged, places):
+        assert line.attributes() == place.attributes()
+        point = place.geometry().asPoint()
+        assert (point.x(), point.y()) == (line["critical_x"], line["critical_y"])
+        start = line.geometry().asPolyline()[0]
+        assert start.distance(point) == pytest.approx(line["critical_distance"], rel=1e-3)
+
+
 def test_with_another_layer_probability_and_radio(run, dem, masts, observers):
     results = run("intervisibility", INPUT=dem, POINTS_A=observers, POINTS_B=masts, HEIGHT_A=4.0, HEIGHT_B=2.0,
                   FIELD_B="name", PROBABILITY=True, REALISATIONS=64, SEED=3, FREQUENCY=2400.0, MAX_DISTANCE=5000.0,
