@@ -46,8 +46,8 @@ def in_words(model):
             )
         )
         bias = model.shared_bias
-        higher = tr("{:.3g} m too high") if bias > 0 else tr("{:.3g} m too low")
-        told.append(tr("On the whole it is {}.").format(higher.format(abs(bias))))
+        higher = tr("On the whole it is {:.3g} m too high.") if bias > 0 else tr("On the whole it is {:.3g} m too low.")
+        told.append(higher.format(abs(bias)) if bias else tr("On the whole it is neither too high nor too low."))
     elif report["rounding"]:
         told.append(tr("Its heights are rounded, which adds {:.3g} m.").format(report["rounding"]))
     else:

@@ -31,10 +31,9 @@ def log_areas(feedback, report, confidence):
 
 
 def area(square_metres):
-    """In the unit that reads best."""
-    if square_metres >= 1e5:
-        return tr("{:.4g} km²").format(square_metres / 1e6)
-    return tr("{:.4g} m²").format(square_metres)
+    """Four digits, in the unit that reads best, and never as a power of ten."""
+    value, unit = (square_metres / 1e6, "km²") if square_metres >= 1e5 else (square_metres, "m²")
+    return f"{float(f'{value:.4g}'):,.12g} {unit}"
 
 
 def counted(verdicts, confidence):
@@ -57,6 +56,6 @@ def _between_samples(variation):
         return tr("Between samples the ground rises by at most {:.3g} m (at 95 %).").format(variation)
     typical = variation.get("from_dem", {}).get("typical_m")
     if typical is not None:
-        told = tr("Half-way between samples the ground departs by {:.3g} m (one sigma), as learnt from the elevation model.")
+        told = tr("Half-way between samples the ground departs by {:.3g} m (one sigma), learnt from the elevation model.")
         return told.format(typical)
     return tr("What the ground does between samples differs from place to place.")

@@ -10,9 +10,9 @@ _PROBABILITY = "confidence"  # the style that is shown in classes of claims
 
 
 def write_rasters(algorithm, result, rows, parameters, context, feedback, first):
-    """Paths by output. `rows` begin with output, label, argument of result.write, style, and the share of the values that the
-    ramp spans (0: as the style says). Uses algorithm.options, and CONFIDENCE for probabilities; `first` is where the progress
-    stands."""
+    """Paths by output. `rows` begin with output, label, argument of result.write, style, and the share of the values
+    that the ramp spans (0: as the style says). Uses algorithm.options, and CONFIDENCE for probabilities; `first` is
+    where the progress stands."""
     wanted = [row[:5] for row in rows if given(parameters, row[0])]
     paths = {name: algorithm.parameterAsOutputLayer(parameters, name, context) for name, *_ in wanted}
     with core_errors(rows[0][0], {path: name for name, path in paths.items()}):
@@ -22,6 +22,7 @@ def write_rasters(algorithm, result, rows, parameters, context, feedback, first)
             progress=Progress(feedback, first, 100.0),
         )
     for name, _, _, style, stretch in wanted:
-        confidence = algorithm.parameterAsDouble(parameters, "CONFIDENCE", context) if style == _PROBABILITY else None
+        claims = style == _PROBABILITY
+        confidence = algorithm.parameterAsDouble(parameters, "CONFIDENCE", context) if claims else None
         style_when_loaded(context, paths[name], style, stretch, confidence)
     return paths

@@ -31,9 +31,9 @@ def style_path(style):
 
 
 class StyleOnLoad(QgsProcessingLayerPostProcessorInterface):
-    """Gives a loaded layer a style, and titles to its columns. `stretch` fits the colour ramp to that share of the layer's
-    values, 0 leaves it; `confidence` shows a probability in classes, see class_claims; `flat` takes the 3D part of the style
-    away. Without a style ('') only the columns are entitled.
+    """Gives a loaded layer a style, and titles to its columns. `stretch` fits the colour ramp to that share of the
+    layer's values, 0 leaves it; `confidence` shows a probability in classes, see class_claims; `flat` takes the 3D part
+    of the style away. Without a style ('') only the columns are entitled.
 
     One instance for each layer: the context deletes it. It does not keep the Python half alive, so this class does.
     """
@@ -87,8 +87,8 @@ def stretch_ramp(layer, share):
 
 
 def class_claims(layer, confidence):
-    """Shows a probability in classes of the layer's colour ramp. The outermost are what may be claimed at that confidence: hidden
-    up to (1 - c) / 2, visible from (1 + c) / 2 on."""
+    """Shows a probability in classes of the layer's colour ramp. The outermost are what may be claimed at that
+    confidence: hidden up to (1 - c) / 2, visible from (1 + c) / 2 on."""
     shader = layer.renderer().shader().rasterShaderFunction()
     low, high = 0.5 * (1.0 - confidence), 0.5 * (1.0 + confidence)
     borders = [low, *(border for border in _PROBABILITIES if low < border < high), high]
@@ -98,7 +98,8 @@ def class_claims(layer, confidence):
         return QColor(*rgba)
 
     hidden = tr("{:.4g} % and less: almost surely hidden").format(100.0 * low)
-    items = [QgsColorRampShader.ColorRampItem(low, colour(0.0), hidden)]
+    nothing = QColor(255, 255, 255, 0)  # white, for legends on paper leave transparency out
+    items = [QgsColorRampShader.ColorRampItem(low, nothing, hidden)]
     for lower, upper in zip(borders, borders[1:]):
         label = f"{100.0 * lower:.4g} – {100.0 * upper:.4g} %"
         below = math.nextafter(upper, 0.0) if upper == high else upper  # a class holds its upper border

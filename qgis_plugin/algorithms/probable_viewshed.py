@@ -138,7 +138,7 @@ class ProbableViewshed(SightboundAlgorithm):
         log_report(feedback, report)
         log_areas(feedback, report, self.parameterAsDouble(parameters, "CONFIDENCE", context))
         feedback.pushInfo(tr("Visible area to be expected: {}.").format(area(report["expected_visible_m2"])))
-        told = tr("Up to {} terrains were drawn, for {} that do not look alike in all; a probability is known to ± {:.2g}.")
+        told = tr("Up to {} terrains were drawn for the {} that may differ; a probability is known to ± {:.2g}.")
         drawn = report["realisations"], area(report["in_doubt_m2"]), report["largest_standard_error"]
         feedback.pushInfo(told.format(*drawn))
 

@@ -31,6 +31,7 @@ def test_each_two_once(run, dem, masts, log):
     assert [line["status"] for line in lines] == ["ok", "ok", "outside", "ok", "outside", "outside"]
     assert results["COUNT_UNKNOWN"] == 3 and any("3 pairs" in text for text in log.warnings)
     assert sum(results[f"COUNT_{word}"] for word in ("VISIBLE", "UNCERTAIN", "HIDDEN")) == 3
+    assert any(text.startswith("6 lines: ") and text.endswith("at a confidence of 0.95.") for text in log.infos)
     names = [field.name() for field in results["OUTPUT"].fields()]
     assert names == [field.name() for field in results["OUTPUT_TABLE"].fields()]
     assert not any(name.startswith(("probability", "fresnel")) for name in names)
