@@ -16,6 +16,7 @@ _LEGEND = 660
 _MARGIN = 0.05  # of the span, around the values
 _PALE, _DARK = (247, 244, 236), (122, 28, 46)
 _LARGEST_PICTURE = 600  # pixels along a side
+_SHOWN = 400  # pixels, up to which small ones are enlarged
 
 
 class Chart:
@@ -127,4 +128,5 @@ def picture(values, largest):
     buffer.open(QIODevice.OpenModeFlag.WriteOnly)
     image.save(buffer, "PNG")
     text = base64.b64encode(bytes(data)).decode("ascii")
-    return f"<img class='map' width='{cols}' height='{rows}' src='data:image/png;base64,{text}' alt=''/>"
+    zoom = max(1, _SHOWN // max(rows, cols))
+    return f"<img class='map' width='{zoom * cols}' height='{zoom * rows}' src='data:image/png;base64,{text}' alt=''/>"

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads the error block: in the main thread what was said, in the worker the core's ErrorModel of it."""
 
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -34,6 +33,7 @@ _INPUTS = (
     "CORRELATION_LENGTH",
     "SHARED_BIAS",
     "SAMPLES_OR_MEANS",
+    "RIDGE_GAIN",
 )
 
 
@@ -92,11 +92,6 @@ def check_error_block(algorithm, parameters, context):
     ):
         return tr("GEOLOGIC_RANGE: GEOLOGIC_MODEL=step needs a range in metres.")
     return ""
-
-
-def log_error_model(feedback, text):
-    """Writes to the log which error model was used, on one line."""
-    feedback.pushInfo(tr("Error model used: {}").format(json.dumps(json.loads(text))))
 
 
 def _from_file(algorithm, parameters, context, feedback):
@@ -158,6 +153,9 @@ def _read_nature(choice, algorithm, parameters, context):
         metres = number_or_none(algorithm, parameters, name, context)
         if metres:
             choice.other[name.lower()] = metres
+    gain = number_or_none(algorithm, parameters, "RIDGE_GAIN", context)
+    if gain is not None:
+        choice.other["ridge_gain"] = gain
 
 
 def _polygons(algorithm, parameters, context, feedback, dem):

@@ -12,16 +12,16 @@ _FEWEST_BEYOND = 2  # residuals beyond a quantile that is shown
 _TAILS = (("normal", "first"), ("laplace", "second"), ("student", "third"))
 
 
-def write_report(path, model, quantile, between):
-    """`model` is an ErrorModel of estimate_error(), `quantile(confidence, tails)` that of errors of sd 1, `between` the
-    sd between samples, cell by cell."""
+def write_report(path, model, quantile, halfway):
+    """`model` is an ErrorModel of estimate_error(), `quantile(confidence, tails)` that of errors of sd 1, `halfway` the
+    sd half-way between samples, cell by cell."""
     report = model.report
-    parts = [f"<p>{html.escape(_in_words(model))}</p>", _table(_model_rows(model))]
+    parts = [f"<p>{html.escape(in_words(model))}</p>", _table(_model_rows(model))]
     if report["warnings"]:
         notes = "".join(f"<li>{html.escape(note)}</li>" for note in report["warnings"])
         parts.append(f"<h2>{tr('To be looked at')}</h2><ul>{notes}</ul>")
     parts += [f"<h2>{tr('How the error grows with the spacing of samples')}</h2>", _growth(report)]
-    parts += [f"<h2>{tr('The error between samples, half a spacing away')}</h2>", _map(between)]
+    parts += [f"<h2>{tr('The error half-way between samples, that of the samples included')}</h2>", _map(halfway)]
     for name, title in (("reference", tr("Against the better elevation model")), ("checkpoints", tr("Against the check points"))):
         if name in report:
             parts += _check(report[name], title, quantile)
@@ -29,7 +29,8 @@ def write_report(path, model, quantile, between):
     path.write_text(page(tr("The error of an elevation model"), parts), encoding="utf-8")
 
 
-def _in_words(model):
+def in_words(model):
+    """What was learnt, for people in a hurry."""
     report = model.report
     told = [
         tr("Half-way between its samples the elevation model misses the ground by {:.3g} m (one standard deviation, over all of it).").format(
@@ -45,8 +46,8 @@ def _in_words(model):
             )
         )
         bias = model.shared_bias
-        higher = tr("{:.3g} m too high") if bias > 0 else tr("{:.3g} m too low")
-        told.append(tr("On the whole it is {}.").format(higher.format(abs(bias))))
+        higher = tr("On the whole it is {:.3g} m too high.") if bias > 0 else tr("On the whole it is {:.3g} m too low.")
+        told.append(higher.format(abs(bias)) if bias else tr("On the whole it is neither too high nor too low."))
     elif report["rounding"]:
         told.append(tr("Its heights are rounded, which adds {:.3g} m.").format(report["rounding"]))
     else:
@@ -87,16 +88,16 @@ def _growth(report):
     return chart.svg() or f"<p>{tr('Nothing could be measured.')}</p>"
 
 
-def _map(between):
+def _map(halfway):
     import numpy
 
-    known = between[numpy.isfinite(between)]
+    known = halfway[numpy.isfinite(halfway)]
     if not known.size:
         return f"<p>{tr('Nothing is known anywhere.')}</p>"
     largest = float(numpy.percentile(known, _MAP_SHARE))
     middle = float(numpy.median(known))
     caption = tr("From pale (0) to dark ({:.3g} m and more); half of the ground is below {:.3g} m.").format(largest, middle)
-    return f"{picture(between, largest)}<p>{caption}</p>"
+    return f"{picture(halfway, largest)}<p>{caption}</p>"
 
 
 def _check(check, title, quantile):

@@ -96,7 +96,7 @@ def fields_of(*makers):
 
 
 def write_features(algorithm, output, kind, fields, rows, dem, parameters, context, style):
-    """Writes rows of (geometry, attributes) to the sink `output`; no style for ''."""
+    """Writes rows of (geometry, attributes) to the sink `output`; titles alone for the style ''."""
     sink, target = algorithm.parameterAsSink(parameters, output, context, fields, kind, dem.crs)
     if sink is None:
         raise bad_input(output, tr("the layer cannot be written."))
@@ -107,6 +107,5 @@ def write_features(algorithm, output, kind, fields, rows, dem, parameters, conte
         feature.setAttributes(attributes)
         if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
             raise bad_input(output, tr("a feature cannot be written."))
-    if style:
-        style_when_loaded(context, target, style)
+    style_when_loaded(context, target, style)
     return target

@@ -29,6 +29,13 @@ class NetworkRows:
             ends = [QgsPointXY(one.x, one.y), QgsPointXY(other.x, other.y)]
             yield QgsGeometry.fromPolylineXY(ends), attributes
 
+    def critical(self, feedback):
+        """(critical place, attributes) of the pairs that have one."""
+        x, y = (self.fields.lookupField(name) for name in ("critical_x", "critical_y"))
+        for _, _, attributes in self._pairs(feedback):
+            if attributes[x] is not None:
+                yield QgsGeometry.fromPointXY(QgsPointXY(attributes[x], attributes[y])), attributes
+
     def table(self, feedback):
         for _, _, attributes in self._pairs(feedback):
             yield None, attributes
@@ -50,6 +57,12 @@ def write_network(algorithm, rows, dem, parameters, context, feedback):
     kind = QgsWkbTypes.Type.LineString
     lines = rows.lines(feedback)
     return write_features(algorithm, "OUTPUT", kind, rows.fields, lines, dem, parameters, context, "lines")
+
+
+def write_critical(algorithm, rows, dem, parameters, context, feedback):
+    kind = QgsWkbTypes.Type.Point
+    places = rows.critical(feedback)
+    return write_features(algorithm, "OUTPUT_CRITICAL", kind, rows.fields, places, dem, parameters, context, "critical")
 
 
 def write_table(algorithm, rows, dem, parameters, context, feedback):

@@ -179,6 +179,7 @@ def error_block():
         ),
         advanced(number("SHARED_BIAS", tr("Bias of all heights in metres"), default("shared_bias"))),
         advanced(choice("SAMPLES_OR_MEANS", tr("Cells hold"), ["auto", "samples", "means"], "auto")),
+        advanced(number("RIDGE_GAIN", tr("Ridge gain (empty: estimate from the DEM)"), unset, -2.0, 2.0)),
         advanced(
             QgsProcessingParameterFile(
                 "ERROR_MODEL",

@@ -13,69 +13,102 @@ from typing import NamedTuple
 
 from . import core
 from .line_outputs import critical_index
+from .log import counted
 from .pages import page, ticks
 from .text import tr
 
 MOST = 50  # drawings on a page
 _WIDTH, _HEIGHT = 860, 300
-_WHOLE, _DETAIL = (60, 570), (650, 850)  # left and right edge of the two parts
+_WHOLE, _DETAIL = (60, 570), (650, 836)  # left and right edge of the two parts
 _TOP, _BOTTOM = 16, 260
 _DETAIL_SHARE = 0.02  # of the length, to either side of the critical place
+_LETTER = 5.9  # drawing units that a letter of the key takes
 _DETAIL_PLACES = 12  # judged places to either side that the detail shows at least
 
 
 def write_profiles(path, lines, confidence, error_model):
     """Writes the page; of more than MOST lines the first are drawn and the number of the others is said."""
     left_out = max(0, len(lines) - MOST)
-    counts = {
-        verdict: sum(line.verdict == verdict for line in lines)
-        for verdict in ("visible", "uncertain", "hidden")
-    }
-    summary = tr(
-        "{} lines: {visible} visible, {uncertain} uncertain, {hidden} hidden at a confidence of {confidence:g}."
-    )
-    parts = [f"<p>{summary.format(len(lines), confidence=confidence, **counts)}</p>"]
+    parts = [f"<p>{counted((line.verdict for line in lines), confidence)}</p>"]
     if left_out:
         parts.append(f"<p>{tr('The first {} are drawn; {} were left out.').format(MOST, left_out)}</p>")
+    parts.append(_key(confidence, radio=any(line.sight.fresnel is not None for line in lines)))
     z = core.load().two_sided_quantile(confidence, json.loads(error_model).get("tails"))
     parts += [_section(line, z) for line in lines[:MOST]]
     parts.append(f"<h2>{tr('Error model used')}</h2><pre>{html.escape(error_model)}</pre>")
     path.write_text(page(tr("Lines of sight"), parts), encoding="utf-8")
 
 
+def _key(confidence, radio):
+    """What the drawings show, above them all."""
+    entries = [
+        (_line, "ground", tr("elevation model")),
+        (_patch, "band", tr("where the ground lies at {:g}").format(confidence)),
+        (_line, "sight visible", tr("line of sight")),
+        (_ring, "critical", tr("critical place (right: enlarged)")),
+    ]
+    if radio:
+        entries.insert(3, (_patch, "zone", tr("first Fresnel zone")))
+    parts, x = [], 0.0
+    for draw, style, text in entries:
+        parts += [draw(x, style), f"<text x='{x + 30:.0f}' y='16'>{text}</text>"]
+        x += 54 + _LETTER * len(text)
+    return f"<svg class='key' viewBox='0 0 {_WIDTH} 24' role='img'>{''.join(parts)}</svg>"
+
+
+def _line(x, style):
+    return _shape("polyline", style, [(x, 12), (x + 24, 12)])
+
+
+def _patch(x, style):
+    return _shape("polygon", style, [(x, 6), (x + 24, 6), (x + 24, 18), (x, 18)])
+
+
+def _ring(x, style):
+    return f"<circle class='{style}' cx='{x + 14:.0f}' cy='12' r='5'/>"
+
+
 def _section(line, z):
     sight = line.sight
     title = f"{html.escape(line.observer.name)} → {html.escape(line.target.name)}"
-    facts = [
-        f"<b class='{line.verdict}'>{tr(line.verdict)}</b>",
-        tr("p = {:.3f}").format(sight.p),
-        tr("distance {:.0f} m").format(sight.distance),
-    ]
+    verdict = f"<b class='{line.verdict}'>{tr(line.verdict)}</b>"
+    facts = [" · ".join([verdict, *_facts(sight)]), " · ".join(_whole_line(sight)), " · ".join(_radio(sight))]
+    return f"<h2>{title}</h2>{''.join(f'<p>{one}</p>' for one in facts if one)}{_drawing(line, z)}"
+
+
+def _facts(sight):
+    facts = [tr("p = {:.3f}").format(sight.p), tr("distance {:,.0f} m").format(sight.distance)]
     if math.isfinite(sight.critical_distance):
-        facts.append(tr("critical place at {:.0f} m, k = {:.2f}").format(sight.critical_distance, sight.k))
-    if math.isfinite(sight.required_height):
-        facts.append(
-            tr("surely visible from {:.1f} m above the target's ground").format(sight.required_height)
-        )
-    facts += _extra_facts(sight)
-    return f"<h2>{title}</h2><p>{' · '.join(facts)}</p>{_drawing(line, z)}"
+        facts.append(tr("critical place at {:,.0f} m, k = {:.2f}").format(sight.critical_distance, sight.k))
+    if sight.required_height == 0.0:
+        facts.append(tr("surely visible from the target's ground up"))
+    elif math.isfinite(sight.required_height):
+        facts.append(tr("surely visible from {:.1f} m above the target's ground").format(sight.required_height))
+    return facts
 
 
-def _extra_facts(sight):
-    facts, whole, zone = [], sight.whole_line, sight.fresnel
-    if whole is not None:
-        clear = tr("the whole line is clear with P = {:.3f} ± {:.3f}")
-        facts.append(clear.format(whole.probability, whole.standard_error))
-    if whole is not None and math.isfinite(whole.blocked_bound):
+def _whole_line(sight):
+    facts, whole = [], sight.whole_line
+    if whole is None:
+        return facts
+    clear = tr("Whole line: clear with P = {:.3f} ± {:.3f}")
+    facts.append(clear.format(whole.probability, whole.standard_error))
+    if math.isfinite(whole.blocked_bound):
         facts.append(tr("blocked with {:.2g} at most").format(whole.blocked_bound))
-    if whole is not None and math.isfinite(whole.blocked_distance):
-        most = tr("most often at {:.0f} m, in {:.1%} of the terrains drawn")
+    if math.isfinite(whole.blocked_distance):
+        most = tr("most often blocked at {:,.0f} m, in {:.1%} of the terrains drawn")
         facts.append(most.format(whole.blocked_distance, whole.blocked_share))
+    return facts
+
+
+def _radio(sight):
+    facts, whole, zone = [], sight.whole_line, sight.fresnel
     if zone is not None and math.isfinite(zone.clear):
-        worst = tr("least clearance {:.0%} of the first Fresnel zone ({:.1f} m) at {:.0f} m, p = {:.3f} for its share")
-        facts.append(worst.format(zone.clear, zone.worst_radius, zone.worst_distance, zone.p))
+        worst = tr("Radio: least clearance {:.0%} of the first Fresnel zone's radius ({:.1f} m), at {:,.0f} m")
+        facts.append(worst.format(zone.clear, zone.worst_radius, zone.worst_distance))
+        facts.append(tr("the share asked for is clear there with p = {:.3f}").format(zone.p))
     if whole is not None and math.isfinite(whole.fresnel_probability):
-        facts.append(tr("that share is clear with P = {:.3f}").format(whole.fresnel_probability))
+        facts.append(tr("all along with P = {:.3f}").format(whole.fresnel_probability))
     return facts
 
 

@@ -15,10 +15,15 @@ from qgis.core import (
     QgsProcessingLayerPostProcessorInterface,
     QgsRasterLayer,
     QgsSingleBandPseudoColorRenderer,
+    QgsVectorLayer,
 )
 from qgis.PyQt.QtGui import QColor
 
+from .field_titles import entitle
+from .text import tr
+
 _STYLES = Path(__file__).parent / "styles"
+_PROBABILITIES = (0.1, 0.3, 0.5, 0.7, 0.9)  # borders of classes between the claims
 
 
 def style_path(style):
@@ -26,25 +31,32 @@ def style_path(style):
 
 
 class StyleOnLoad(QgsProcessingLayerPostProcessorInterface):
-    """Gives a loaded layer a style. `stretch` fits the colour ramp to that share of the layer's values, 0 leaves it;
-    `flat` takes the 3D part of the style away.
+    """Gives a loaded layer a style, and titles to its columns. `stretch` fits the colour ramp to that share of the
+    layer's values, 0 leaves it; `confidence` shows a probability in classes, see class_claims; `flat` takes the 3D part
+    of the style away. Without a style ('') only the columns are entitled.
 
     One instance for each layer: the context deletes it. It does not keep the Python half alive, so this class does.
     """
 
     _alive = []
 
-    def __init__(self, style, stretch, flat=False):
+    def __init__(self, style, stretch=0.0, flat=False, confidence=None):
         super().__init__()
         self.style = style
         self.stretch = stretch
         self.flat = flat
+        self.confidence = confidence
         self._alive.append(self)
 
     def postProcessLayer(self, layer, context, feedback):
-        message, loaded = layer.loadNamedStyle(style_path(self.style))
-        if not loaded:
-            feedback.pushWarning(message)
+        if self.style:
+            message, loaded = layer.loadNamedStyle(style_path(self.style))
+            if not loaded:
+                feedback.pushWarning(message)
+        if isinstance(layer, QgsVectorLayer):
+            entitle(layer)
+        if self.confidence is not None:
+            class_claims(layer, self.confidence)
         if self.stretch and isinstance(layer, QgsRasterLayer):
             stretch_ramp(layer, self.stretch)
         if self.stretch and isinstance(layer, QgsMeshLayer):
@@ -71,6 +83,32 @@ def stretch_ramp(layer, share):
     _round_labels(shader, largest - least)
     renderer.setClassificationMin(least)
     renderer.setClassificationMax(largest)
+    layer.rendererChanged.emit()  # the legend was made before
+
+
+def class_claims(layer, confidence):
+    """Shows a probability in classes of the layer's colour ramp. The outermost are what may be claimed at that
+    confidence: hidden up to (1 - c) / 2, visible from (1 + c) / 2 on."""
+    shader = layer.renderer().shader().rasterShaderFunction()
+    low, high = 0.5 * (1.0 - confidence), 0.5 * (1.0 + confidence)
+    borders = [low, *(border for border in _PROBABILITIES if low < border < high), high]
+
+    def colour(value):
+        _, *rgba = shader.shade(value)
+        return QColor(*rgba)
+
+    hidden = tr("{:.4g} % and less: almost surely hidden").format(100.0 * low)
+    nothing = QColor(255, 255, 255, 0)  # white, for legends on paper leave transparency out
+    items = [QgsColorRampShader.ColorRampItem(low, nothing, hidden)]
+    for lower, upper in zip(borders, borders[1:]):
+        label = f"{100.0 * lower:.4g} – {100.0 * upper:.4g} %"
+        below = math.nextafter(upper, 0.0) if upper == high else upper  # a class holds its upper border
+        items.append(QgsColorRampShader.ColorRampItem(below, colour(0.5 * (lower + upper)), label))
+    visible = tr("{:.4g} % and more: almost surely visible").format(100.0 * high)
+    items.append(QgsColorRampShader.ColorRampItem(math.inf, colour(1.0), visible))
+    shader.setColorRampType(QgsColorRampShader.Type.Discrete)
+    shader.setColorRampItemList(items)
+    layer.rendererChanged.emit()
 
 
 def stretch_mesh(layer):
@@ -127,8 +165,8 @@ def _round_labels(shader, span):
     shader.setLegendSettings(settings)
 
 
-def style_when_loaded(context, output, style, stretch=0.0):
-    """Asks QGIS to style `output` (a path or a sink's id) if it will be loaded."""
+def style_when_loaded(context, output, style, stretch=0.0, confidence=None):
+    """Asks QGIS to style `output` (a path or a sink's id) if it will be loaded; see StyleOnLoad."""
     if context.willLoadLayerOnCompletion(output):
         details = context.layerToLoadOnCompletionDetails(output)
-        details.setPostProcessor(StyleOnLoad(style, stretch))
+        details.setPostProcessor(StyleOnLoad(style, stretch, confidence=confidence))

@@ -32,7 +32,6 @@ def draw(folder, dem, results):
         relief = maps.hillshade(dem, scratch)
         observers = maps.points(folder / "observers.gpkg", "Observer", "name")
         confidence = maps.raster(folder / "confidence.tif", "Confidence of being seen", folder / "confidence.qml")
-        maps.name_ramp_ends(confidence, "0  surely hidden", "1  surely visible")
         verdict = maps.raster(folder / "verdict.tif", "Verdict at 95 %", folder / "verdict.qml")
         share = {word: 100.0 * results[f"SHARE_{word.upper()}"] for word in ("visible", "uncertain", "hidden")}
         maps.write_page(

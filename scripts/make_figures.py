@@ -69,7 +69,6 @@ def draw(folder, shares, verdict, seen):
     place = maps.points(copy, "Observer", "name")
     place.setSubsetString(f"name = '{OBSERVER}'")
     confidence = maps.raster(folder / "confidence.tif", "Confidence of being seen", styles / "confidence.qml")
-    maps.name_ramp_ends(confidence, "0  surely hidden", "1  surely visible")
     ordinary = maps.raster(folder / "ordinary.tif", "Ordinary viewshed", styles / "verdict.qml")
     maps.write_page(
         ROOT / "docs" / "images" / "viewshed.png",

@@ -11,7 +11,6 @@ from osgeo import gdal
 from qgis.core import (
     QgsApplication,
     QgsColorRampLegendNode,
-    QgsColorRampLegendNodeSettings,
     QgsCoordinateReferenceSystem,
     QgsHillshadeRenderer,
     QgsLayerTree,
@@ -36,8 +35,9 @@ from qgis.core import (
     QgsUnitTypes,
     QgsVectorLayer,
     QgsVectorLayerSimpleLabeling,
+    QgsWkbTypes,
 )
-from qgis.PyQt.QtCore import QSize, QSizeF
+from qgis.PyQt.QtCore import QSize, QSizeF, Qt
 from qgis.PyQt.QtGui import QColor, QFont
 
 MM = QgsUnitTypes.LayoutUnit.LayoutMillimeters
@@ -73,12 +73,17 @@ def raster(path, name, style=None):
     if not layer.isValid():
         raise OSError(f"{path} cannot be read as a raster")
     if style:
-        message, ok = layer.loadNamedStyle(str(style))
-        if not ok:
-            raise OSError(f"{style} cannot be used as a style: {message}")
-        layer.setName(name)
+        _styled(layer, style)
     QgsProject.instance().addMapLayer(layer)
     return layer
+
+
+def _styled(layer, style):
+    name = layer.name()
+    message, ok = layer.loadNamedStyle(str(style))
+    if not ok:
+        raise OSError(f"{style} cannot be used as a style: {message}")
+    layer.setName(name)
 
 
 def hillshade(dem_path, folder, name="Hillshade"):
@@ -102,32 +107,36 @@ def _cell_metres(layer):
     return layer.rasterUnitsPerPixelY() * metres_a_unit
 
 
-def name_ramp_ends(layer, lowest, highest):
-    """What the legend writes beside the lower and the upper end of a layer's colour ramp."""
-    shader = layer.renderer().shader().rasterShaderFunction()
-    settings = QgsColorRampLegendNodeSettings(shader.legendSettings())
-    settings.setMinimumLabel(lowest)
-    settings.setMaximumLabel(highest)
-    shader.setLegendSettings(settings)
+def vector(path, name, style=None):
+    layer = QgsVectorLayer(str(path), name, "ogr")
+    if not layer.isValid():
+        raise OSError(f"{path} cannot be read as a vector layer")
+    if style:
+        _styled(layer, style)
+    QgsProject.instance().addMapLayer(layer)
+    return layer
 
 
 def points(path, name, label_field=None):
-    layer = QgsVectorLayer(str(path), name, "ogr")
-    if not layer.isValid():
-        raise OSError(f"{path} cannot be read as a point layer")
+    layer = vector(path, name)
     symbol = QgsMarkerSymbol.createSimple(
         {"name": "triangle", "color": "#ffffff", "outline_color": "#000000", "outline_width": "0.5", "size": "4"}
     )
     layer.setRenderer(QgsSingleSymbolRenderer(symbol))
     if label_field:
-        settings = QgsPalLayerSettings()
-        settings.fieldName = label_field
-        settings.dist = 2.5
-        settings.setFormat(text_format(9, bold=True, halo=True))
-        layer.setLabeling(QgsVectorLayerSimpleLabeling(settings))
-        layer.setLabelsEnabled(True)
-    QgsProject.instance().addMapLayer(layer)
+        label(layer, label_field)
     return layer
+
+
+def label(layer, expression):
+    settings = QgsPalLayerSettings()
+    settings.fieldName, settings.isExpression = expression, True
+    if layer.geometryType() == QgsWkbTypes.GeometryType.LineGeometry:
+        settings.placement = QgsPalLayerSettings.Placement.Line
+    settings.dist = 2.5
+    settings.setFormat(text_format(9, bold=True, halo=True))
+    layer.setLabeling(QgsVectorLayerSimpleLabeling(settings))
+    layer.setLabelsEnabled(True)
 
 
 def text_format(points_high, bold=False, halo=False):
@@ -205,6 +214,7 @@ def _label(layout, text, x, y, width, height, size, bold=False):
     item = QgsLayoutItemLabel(layout)
     layout.addLayoutItem(item)
     item.setText(text)
+    item.setHAlign(Qt.AlignmentFlag.AlignLeft)
     if hasattr(item, "setTextFormat"):  # since 3.24
         item.setTextFormat(text_format(size, bold))
     else:

@@ -11,9 +11,10 @@ from qgis.core import (
 )
 
 from .. import parameters as blocks
-from ..error_block import check_error_block, log_error_model, read_error_block
+from ..error_block import check_error_block, read_error_block
 from ..errors import core_errors
 from ..feedback import Progress
+from ..log import log_report
 from ..rasters import open_dem, read_extent, read_raster
 from ..text import tr
 from ..tins import open_mesh, open_tin, read_mesh, read_tin_layer, tin_layer
@@ -120,9 +121,7 @@ class BuildErrorVolume(VolumeAlgorithm):
         arguments.update(voxel=need["voxel"], voxel_height=need["voxel_height"])
         volume = sightbound.ErrorVolume.build(**arguments, progress=Progress(feedback, 10.0, 90.0))
         report = volume.report
-        log_error_model(feedback, report["error_model"])
-        for warning in report["warnings"]:
-            feedback.pushWarning(warning)
+        log_report(feedback, report)
         feedback.pushInfo(
             tr("Built: {} voxels near the terrain, {:.4g} MB of memory.").format(report["voxels"], report["bytes"] / 1e6)
         )

@@ -16,12 +16,12 @@ from qgis.core import (
 from .. import observers
 from .. import parameters as blocks
 from ..defaults import default
-from ..error_block import check_error_block, log_error_model, read_error_block
-from ..errors import core_errors
+from ..error_block import check_error_block, read_error_block
 from ..feedback import Progress
+from ..log import log_areas, log_report
 from ..observer_outputs import observer_rasters, write_observer_table
+from ..raster_outputs import write_rasters
 from ..rasters import creation_options, open_dem, read_extent, read_raster
-from ..styling import style_when_loaded
 from ..text import tr
 from ..values import given, word
 from .base import SightboundAlgorithm
@@ -116,6 +116,7 @@ class ConfidenceViewshed(SightboundAlgorithm):
     def read_input(self, parameters, context, feedback):
         dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
         places, source = observers.read_observers(self, parameters, context, feedback, dem)
+        self.options = creation_options(self, parameters, context)
         self.job = Job(
             dem=dem,
             vertical_unit=word(self, parameters, "VERTICAL_UNIT", context),
@@ -124,7 +125,7 @@ class ConfidenceViewshed(SightboundAlgorithm):
             places=places,
             source=source,
             arguments=self._arguments(parameters, context, dem, places),
-            options=creation_options(self, parameters, context),
+            options=self.options,
         )
 
     def _arguments(self, parameters, context, dem, places):
@@ -153,7 +154,8 @@ class ConfidenceViewshed(SightboundAlgorithm):
         rasters_too = given(parameters, "OUTPUT_FOLDER")
         progress = Progress(feedback, 0.0, 50.0 if rasters_too else 95.0)
         result = sightbound.viewshed(dem, spots, progress=progress, **arguments)
-        self._log(result.report, feedback)
+        log_report(feedback, result.report)
+        log_areas(feedback, result.report, arguments["confidence"])
         results = {}
         with ExitStack() as stack:
             if rasters_too:
@@ -161,30 +163,10 @@ class ConfidenceViewshed(SightboundAlgorithm):
                 stack.enter_context(observer_rasters(folder, sightbound, dem, job, arguments, feedback))
                 results["OUTPUT_FOLDER"] = folder
             feedback.setProgressText(tr("Writing"))
-            results.update(self._write(result, parameters, context, feedback))
+            results.update(write_rasters(self, result, RASTERS, parameters, context, feedback, first=95.0))
             if given(parameters, "OUTPUT_OBSERVERS"):
                 table = write_observer_table(self, job, result.report, parameters, context)
                 results["OUTPUT_OBSERVERS"] = table
         results.update({name: result.report[key] for name, _, key in NUMBERS})
         results["ERROR_MODEL_USED"] = result.report["error_model"]
         return results
-
-    def _log(self, report, feedback):
-        log_error_model(feedback, report["error_model"])
-        for warning in report["warnings"]:
-            feedback.pushWarning(warning)
-        for name, label, key in NUMBERS:
-            feedback.pushInfo(f"{tr(label)}: {report[key]:.6g}")
-
-    def _write(self, result, parameters, context, feedback):
-        wanted = [row for row in RASTERS if given(parameters, row[0])]
-        paths = {row[0]: self.parameterAsOutputLayer(parameters, row[0], context) for row in wanted}
-        with core_errors("OUTPUT", {path: name for name, path in paths.items()}):
-            result.write(
-                **{row[2]: paths[row[0]] for row in wanted},
-                creation_options=self.job.options,
-                progress=Progress(feedback, 95.0, 100.0),
-            )
-        for name, _, _, style, stretch, _, _ in wanted:
-            style_when_loaded(context, paths[name], style, stretch)
-        return paths

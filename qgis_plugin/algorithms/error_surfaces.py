@@ -10,20 +10,20 @@ from qgis.core import (
 )
 
 from .. import parameters as blocks
-from ..error_block import check_error_block, log_error_model, read_error_block
-from ..errors import core_errors
+from ..error_block import check_error_block, read_error_block
 from ..feedback import Progress
+from ..log import log_report
+from ..raster_outputs import write_rasters
 from ..rasters import creation_options, open_dem, read_extent, read_raster
-from ..styling import style_when_loaded
 from ..text import tr
 from ..values import given, word
 from .base import SightboundAlgorithm
 
 # output, label, argument of write, style
 RASTERS = (
-    ("OUTPUT_SIGMA", "Sigma: one standard deviation of the error (m)", "sigma", "sigma"),
-    ("OUTPUT_LOWER", "Lower surface", "lower", "surface"),
-    ("OUTPUT_UPPER", "Upper surface", "upper", "surface"),
+    ("OUTPUT_SIGMA", "Sigma: one standard deviation of the error (m)", "sigma", "sigma", 0.98),
+    ("OUTPUT_LOWER", "Lower surface", "lower", "surface", 0.98),
+    ("OUTPUT_UPPER", "Upper surface", "upper", "surface", 0.98),
 )
 
 
@@ -84,19 +84,8 @@ class ErrorSurfaces(SightboundAlgorithm):
             progress=Progress(feedback, 0.0, 90.0),
         )
         used = surfaces.report["error_model"]
-        log_error_model(feedback, used)
-        for warning in surfaces.report["warnings"]:
-            feedback.pushWarning(warning)
-        wanted = [row for row in RASTERS if given(parameters, row[0])]
-        results = {row[0]: self.parameterAsOutputLayer(parameters, row[0], context) for row in wanted}
-        with core_errors("OUTPUT_SIGMA", {path: name for name, path in results.items()}):
-            surfaces.write(
-                **{row[2]: results[row[0]] for row in wanted},
-                creation_options=self.options,
-                progress=Progress(feedback, 90.0, 100.0),
-            )
-        for name, _, _, style in wanted:
-            style_when_loaded(context, results[name], style, stretch=0.98)
+        log_report(feedback, surfaces.report)
+        results = write_rasters(self, surfaces, RASTERS, parameters, context, feedback, first=90.0)
         results["ERROR_MODEL_USED"] = used
         if given(parameters, "OUTPUT_MODEL"):
             results["OUTPUT_MODEL"] = self.parameterAsFileOutput(parameters, "OUTPUT_MODEL", context)

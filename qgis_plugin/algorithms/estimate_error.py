@@ -13,10 +13,10 @@ from qgis.core import (
 
 from .. import parameters as blocks
 from ..check_points import read_check_points
-from ..error_block import log_error_model
-from ..error_html import write_report
+from ..error_html import in_words, write_report
 from ..errors import core_errors
 from ..feedback import Progress
+from ..log import log_report
 from ..rasters import creation_options, open_dem, read_raster
 from ..styling import style_when_loaded
 from ..text import tr
@@ -112,9 +112,7 @@ class EstimateError(SightboundAlgorithm):
                 progress=Progress(feedback, 0.0, 70.0),
             )
         report = model.report
-        log_error_model(feedback, model.to_json())
-        for warning in report["warnings"]:
-            feedback.pushWarning(warning)
+        log_report(feedback, {"error_model": model.to_json(), "warnings": report["warnings"]}, in_words(model))
         results = {
             "ERROR_MODEL_USED": model.to_json(),
             "GROWTH_EXPONENT": report["growth_exponent"],
@@ -184,5 +182,5 @@ class EstimateError(SightboundAlgorithm):
         if report:
             results["OUTPUT_HTML"] = self.parameterAsFileOutput(parameters, "OUTPUT_HTML", context)
             with core_errors("OUTPUT_HTML"):
-                write_report(Path(results["OUTPUT_HTML"]), model, sightbound.two_sided_quantile, maps.between)
+                write_report(Path(results["OUTPUT_HTML"]), model, sightbound.two_sided_quantile, maps.between + maps.sampling)
         return results

@@ -12,16 +12,16 @@ from qgis.core import (
 
 from .. import parameters as blocks
 from ..defaults import default
-from ..error_block import check_error_block, log_error_model, read_error_block
+from ..error_block import check_error_block
 from ..errors import core_errors
 from ..feedback import Progress
-from ..line_extras import extras_block, read_extras
-from ..network_outputs import NetworkRows, write_network, write_table
+from ..line_extras import extras_block
+from ..log import counted, log_report
+from ..network_outputs import VERDICTS, NetworkRows, write_critical, write_network, write_table
 from ..observers import read_points
-from ..rasters import open_dem, read_raster
 from ..text import tr
-from ..values import given, number_or_none, word
-from .base import SightboundAlgorithm
+from ..values import given, number_or_none
+from .lines_base import LinesAlgorithm
 
 COUNTS = (
     ("COUNT_VISIBLE", "Pairs visible", 2),
@@ -31,7 +31,7 @@ COUNTS = (
 )
 
 
-class IntervisibilityNetwork(SightboundAlgorithm):
+class IntervisibilityNetwork(LinesAlgorithm):
     NAME = "intervisibility"
     TITLE = "Intervisibility network"
     SUMMARY = "Which points see each other, how sure is that, and where is it decided?"
@@ -88,9 +88,13 @@ class IntervisibilityNetwork(SightboundAlgorithm):
             + [blocks.threads_parameter()]
         ):
             self.add(parameter)
-        lines, table = QgsProcessing.SourceType.TypeVectorLine, QgsProcessing.SourceType.TypeVector
-        self.add(QgsProcessingParameterFeatureSink("OUTPUT", tr("Network"), lines))
-        self.add(QgsProcessingParameterFeatureSink("OUTPUT_TABLE", tr("Table of pairs"), table), True, False)
+        kinds = QgsProcessing.SourceType
+        self.add(QgsProcessingParameterFeatureSink("OUTPUT", tr("Network"), kinds.TypeVectorLine))
+        for name, label, kind in (
+            ("OUTPUT_CRITICAL", tr("Critical places"), kinds.TypeVectorPoint),
+            ("OUTPUT_TABLE", tr("Table of pairs"), kinds.TypeVector),
+        ):
+            self.add(QgsProcessingParameterFeatureSink(name, label, kind), optional=True, by_default=False)
         for name, label, _ in COUNTS:
             self.addOutput(QgsProcessingOutputNumber(name, tr(label)))
         self.addOutput(QgsProcessingOutputString("ERROR_MODEL_USED", tr("Error model used (JSON)")))
@@ -102,10 +106,7 @@ class IntervisibilityNetwork(SightboundAlgorithm):
         return self.bad_confidence(parameters, context) or check_error_block(self, parameters, context)
 
     def read_input(self, parameters, context, feedback):
-        self.dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
-        self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
-        self.ground = read_raster(self, parameters, "GROUND", context, feedback)
-        self.error = read_error_block(self, parameters, context, feedback, self.dem)
+        self.read_terrain(parameters, context, feedback)
 
         def points(which):
             height, naming = f"HEIGHT_{which}", f"FIELD_{which}"
@@ -117,24 +118,11 @@ class IntervisibilityNetwork(SightboundAlgorithm):
 
         self.here = points("A")
         self.there = points("B") if given(parameters, "POINTS_B") else None
-        self.extras = read_extras(self, parameters, context)
-        self.arguments = {
-            **self.extras,
-            "max_distance": number_or_none(self, parameters, "MAX_DISTANCE", context),
-            "confidence": self.parameterAsDouble(parameters, "CONFIDENCE", context),
-            "refraction": self.parameterAsDouble(parameters, "REFRACTION", context),
-            "curvature": self.parameterAsBoolean(parameters, "CURVATURE", context),
-            "stand": word(self, parameters, "STAND", context),
-            "height_reference": word(self, parameters, "HEIGHT_REFERENCE", context),
-            "see_across_nodata": self.parameterAsBoolean(parameters, "SEE_ACROSS_NODATA", context),
-            "threads": self.parameterAsInt(parameters, "THREADS", context) if given(parameters, "THREADS") else None,
-        }
+        self.arguments["max_distance"] = number_or_none(self, parameters, "MAX_DISTANCE", context)
+        self.arguments["threads"] = self.threads(parameters, context)
 
     def compute(self, sightbound, parameters, context, feedback):
-        dem = open_dem(sightbound, self.dem, self.vertical_unit, feedback)
-        arguments = dict(self.arguments, error_model=self.error.model(sightbound))
-        if self.ground is not None:
-            arguments["ground"] = self.ground.path
+        dem, arguments = self.open_terrain(sightbound, feedback)
         if self.there is not None:
             arguments["points_b"] = [(place.x, place.y) for place in self.there]
             arguments["height_b"] = [place.values["HEIGHT_B"] for place in self.there]
@@ -147,9 +135,7 @@ class IntervisibilityNetwork(SightboundAlgorithm):
                 **arguments,
             )
         report = network.report
-        log_error_model(feedback, report["error_model"])
-        for warning in report["warnings"]:
-            feedback.pushWarning(warning)
+        log_report(feedback, report)
         if report["too_far"]:
             left_out = tr("{} pairs are farther apart than MAX_DISTANCE and left out.")
             feedback.pushInfo(left_out.format(report["too_far"]))
@@ -168,12 +154,14 @@ class IntervisibilityNetwork(SightboundAlgorithm):
         verdicts = network["verdict"]
         results = {name: int((verdicts == verdict).sum()) for name, _, verdict in COUNTS}
         results["ERROR_MODEL_USED"] = used
+        feedback.pushInfo(counted((VERDICTS.get(one, "unknown") for one in verdicts.tolist()), self.confidence))
         if results["COUNT_UNKNOWN"]:
             unknown = tr("{} pairs could not be judged: an end lies outside INPUT, or over nodata (see status).")
             feedback.pushWarning(unknown.format(results["COUNT_UNKNOWN"]))
         rows = NetworkRows(network, self.here, self.here if self.there is None else self.there, self.extras)
         results["OUTPUT"] = write_network(self, rows, self.dem, parameters, context, feedback)
-        if given(parameters, "OUTPUT_TABLE"):
-            results["OUTPUT_TABLE"] = write_table(self, rows, self.dem, parameters, context, feedback)
+        for name, write in (("OUTPUT_CRITICAL", write_critical), ("OUTPUT_TABLE", write_table)):
+            if given(parameters, name):
+                results[name] = write(self, rows, self.dem, parameters, context, feedback)
         feedback.setProgress(100.0)
         return results

@@ -15,18 +15,18 @@ from qgis.core import (
 
 from .. import parameters as blocks
 from ..defaults import default
-from ..error_block import check_error_block, log_error_model, read_error_block
+from ..error_block import check_error_block
 from ..errors import core_errors
 from ..feedback import Progress
-from ..line_extras import extras_block, read_extras
+from ..line_extras import extras_block
 from ..line_outputs import write_critical_places, write_lines
+from ..log import counted, log_report
 from ..observers import read_points
 from ..pairs import check_pairing, find_pairs
 from ..profile_html import write_profiles
-from ..rasters import open_dem, read_raster
 from ..text import tr
 from ..values import given, number_or_none, word
-from .base import SightboundAlgorithm
+from .lines_base import LinesAlgorithm
 
 VERDICTS = ("hidden", "uncertain", "visible")
 
@@ -44,7 +44,7 @@ class SightLine:
         return VERDICTS[self.sight.verdict] if self.sight.verdict < len(VERDICTS) else "unknown"
 
 
-class LineOfSightProfile(SightboundAlgorithm):
+class LineOfSightProfile(LinesAlgorithm):
     NAME = "lineofsightprofile"
     TITLE = "Line of sight profile"
     SUMMARY = "Is each line of sight clear, how sure is that, and which place decides it?"
@@ -124,10 +124,7 @@ class LineOfSightProfile(SightboundAlgorithm):
         )
 
     def read_input(self, parameters, context, feedback):
-        self.dem = read_raster(self, parameters, "INPUT", context, feedback, "BAND")
-        self.vertical_unit = word(self, parameters, "VERTICAL_UNIT", context)
-        self.ground = read_raster(self, parameters, "GROUND", context, feedback)
-        self.error = read_error_block(self, parameters, context, feedback, self.dem)
+        self.read_terrain(parameters, context, feedback)
         ends = [
             read_points(
                 self,
@@ -148,22 +145,9 @@ class LineOfSightProfile(SightboundAlgorithm):
         by_name = word(self, parameters, "PAIRING", context) == "field"
         reach = number_or_none(self, parameters, "MAX_DISTANCE", context)
         self.pairs = find_pairs(*ends, by_name, reach, self.dem.crs, context, feedback)
-        self.extras = read_extras(self, parameters, context)
-        self.arguments = {
-            **self.extras,
-            "confidence": self.parameterAsDouble(parameters, "CONFIDENCE", context),
-            "refraction": self.parameterAsDouble(parameters, "REFRACTION", context),
-            "curvature": self.parameterAsBoolean(parameters, "CURVATURE", context),
-            "stand": word(self, parameters, "STAND", context),
-            "height_reference": word(self, parameters, "HEIGHT_REFERENCE", context),
-            "see_across_nodata": self.parameterAsBoolean(parameters, "SEE_ACROSS_NODATA", context),
-        }
 
     def compute(self, sightbound, parameters, context, feedback):
-        dem = open_dem(sightbound, self.dem, self.vertical_unit, feedback)
-        arguments = dict(self.arguments, error_model=self.error.model(sightbound))
-        if self.ground is not None:
-            arguments["ground"] = self.ground.path
+        dem, arguments = self.open_terrain(sightbound, feedback)
         eyes, targets = zip(*self.pairs)
         with core_errors(paths=self.paths, rename=self._with_labels):
             sights = sightbound.lines_of_sight(
@@ -177,9 +161,9 @@ class LineOfSightProfile(SightboundAlgorithm):
             )
         lines = [SightLine(*pair, sight) for pair, sight in zip(self.pairs, sights)]
         used = sights[0].report["error_model"]
-        log_error_model(feedback, used)
-        for warning in dict.fromkeys(text for sight in sights for text in sight.report["warnings"]):
-            feedback.pushWarning(warning)
+        warnings = dict.fromkeys(text for sight in sights for text in sight.report["warnings"])
+        log_report(feedback, {"error_model": used, "warnings": warnings})
+        feedback.pushInfo(counted((line.verdict for line in lines), self.confidence))
         return self._write(lines, used, parameters, context, feedback)
 
     def _with_labels(self, message):
@@ -204,6 +188,6 @@ class LineOfSightProfile(SightboundAlgorithm):
             results["OUTPUT_CRITICAL"] = write_critical_places(self, lines, self.dem, parameters, context)
         if given(parameters, "OUTPUT_HTML"):
             results["OUTPUT_HTML"] = self.parameterAsFileOutput(parameters, "OUTPUT_HTML", context)
-            write_profiles(Path(results["OUTPUT_HTML"]), lines, self.arguments["confidence"], used)
+            write_profiles(Path(results["OUTPUT_HTML"]), lines, self.confidence, used)
         feedback.setProgress(100.0)
         return results

@@ -11,21 +11,22 @@ from qgis.core import (
 from .. import observers
 from .. import parameters as blocks
 from ..defaults import default
-from ..error_block import check_error_block, log_error_model, read_error_block
-from ..errors import bad_input, core_errors
+from ..error_block import check_error_block, read_error_block
+from ..errors import bad_input
 from ..feedback import Progress
+from ..log import area, log_areas, log_report
+from ..raster_outputs import write_rasters
 from ..rasters import creation_options, open_dem, read_extent, read_raster
-from ..styling import style_when_loaded
 from ..text import tr
 from ..values import given, number_or_none, word
 from .base import SightboundAlgorithm
 
 # output, label, argument of result.write, style, share of the values that the ramp spans, optional
 RASTERS = (
-    ("OUTPUT", "Probability", "probability", "confidence", 0.0, False),
+    ("OUTPUT", "Probability of being seen", "probability", "confidence", 0.0, False),
     ("OUTPUT_VERDICT", "Verdict", "verdict", "verdict", 0.0, True),
     ("OUTPUT_ERROR", "Standard error of the probability", "standard_error", "sigma", 1.0, True),
-    ("OUTPUT_HEIGHTS", "Probability for the further heights, a band each", "at_heights", "confidence", 0.0, True),
+    ("OUTPUT_HEIGHTS", "Probability at the further heights, a band each", "at_heights", "confidence", 0.0, True),
 )
 SHOWN = ("OUTPUT", "OUTPUT_VERDICT")  # unless the user says otherwise
 NUMBERS = (
@@ -57,13 +58,16 @@ class ProbableViewshed(SightboundAlgorithm):
     )
 
     def initAlgorithm(self, configuration=None):
+        heights = QgsProcessingParameterString(
+            "HEIGHTS", tr("Further target heights, in metres (as: 0.5, 2, 30)"), "", False, True
+        )
         draws = blocks.number(
             "REALISATIONS", tr("Largest number of terrains drawn"), default("realisations"), 1, 65535, integer=True
         )
         for parameter in (
             blocks.dem_block()
             + blocks.observers_block()
-            + [blocks.confidence_parameter(), draws]
+            + [heights, blocks.confidence_parameter(), draws]
             + blocks.error_block()
             + blocks.limits_block()
             + [blocks.vertical_unit_parameter(), *blocks.earth_block(), *self._drawing(), blocks.extent_parameter()]
@@ -78,13 +82,9 @@ class ProbableViewshed(SightboundAlgorithm):
 
     def _drawing(self):
         """How terrains are drawn, and when enough of them."""
-        heights = QgsProcessingParameterString(
-            "HEIGHTS", tr("Further target heights, in metres (as: 0.5, 2, 30)"), "", False, True
-        )
         return [
             blocks.advanced(parameter)
             for parameter in (
-                heights,
                 blocks.number("PRECISION", tr("Precision of a probability (0: draw all)"), default("precision"), 0.0, 0.5),
                 blocks.choice("METHOD", tr("Terrains"), ["conditional", "perturb"], default("method")),
                 blocks.number("REFINEMENT", tr("Refinement near eye and target"), default("refinement"), 0, 1, integer=True),
@@ -128,15 +128,19 @@ class ProbableViewshed(SightboundAlgorithm):
             progress=Progress(feedback, 0.0, 95.0),
         )
         report = result.report
-        log_error_model(feedback, report["error_model"])
-        for warning in report["warnings"]:
-            feedback.pushWarning(warning)
-        for _, label, key in NUMBERS:
-            feedback.pushInfo(f"{tr(label)}: {report[key]:.6g}")
-        results = self._write(result, parameters, context, feedback)
+        self._log(report, parameters, context, feedback)
+        results = write_rasters(self, result, RASTERS, parameters, context, feedback, first=95.0)
         results.update({name: report[key] for name, _, key in NUMBERS})
         results["ERROR_MODEL_USED"] = report["error_model"]
         return results
+
+    def _log(self, report, parameters, context, feedback):
+        log_report(feedback, report)
+        log_areas(feedback, report, self.parameterAsDouble(parameters, "CONFIDENCE", context))
+        feedback.pushInfo(tr("Visible area to be expected: {}.").format(area(report["expected_visible_m2"])))
+        told = tr("Up to {} terrains were drawn for the {} that may differ; a probability is known to ± {:.2g}.")
+        drawn = report["realisations"], area(report["in_doubt_m2"]), report["largest_standard_error"]
+        feedback.pushInfo(told.format(*drawn))
 
     def _number(self, parameters, name, context):
         number = number_or_none(self, parameters, name, context)
@@ -156,16 +160,3 @@ class ProbableViewshed(SightboundAlgorithm):
         if given(parameters, "OUTPUT_HEIGHTS") and not heights:
             raise bad_input("OUTPUT_HEIGHTS", tr("needs HEIGHTS: give at least one."))
         return heights
-
-    def _write(self, result, parameters, context, feedback):
-        wanted = [row for row in RASTERS if given(parameters, row[0])]
-        paths = {row[0]: self.parameterAsOutputLayer(parameters, row[0], context) for row in wanted}
-        with core_errors("OUTPUT", {path: name for name, path in paths.items()}):
-            result.write(
-                **{row[2]: paths[row[0]] for row in wanted},
-                creation_options=self.options,
-                progress=Progress(feedback, 95.0, 100.0),
-            )
-        for name, _, _, style, stretch, _ in wanted:
-            style_when_loaded(context, paths[name], style, stretch)
-        return paths

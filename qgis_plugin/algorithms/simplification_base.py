@@ -10,9 +10,9 @@ from qgis.core import (
 )
 
 from .. import parameters as blocks
-from ..error_block import log_error_model
 from ..errors import core_errors, in_our_words
 from ..feedback import Progress
+from ..log import log_error_model
 from ..places_on_dem import places
 from ..styling import StyleOnLoad
 from ..text import tr

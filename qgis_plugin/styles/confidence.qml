@@ -25,6 +25,9 @@
             <item value="0.8" label="80 %" color="#7ad151" alpha="181"/>
             <item value="0.9" label="90 %" color="#bddf26" alpha="188"/>
             <item value="1" label="surely visible" color="#fde725" alpha="200"/>
+          <rampLegendSettings useContinuousLegend="1" orientation="2" direction="0" minimumLabel="0: surely hidden" maximumLabel="1: surely visible" prefix="" suffix="">
+            <numericFormat id="basic"><Option type="Map"/></numericFormat>
+          </rampLegendSettings>
         </colorrampshader>
       </rastershader>
     </rasterrenderer>

@@ -10,6 +10,14 @@
     <symbols>
       <symbol type="line" name="0" alpha="1" clip_to_extent="1" force_rhr="0">
         <layer class="SimpleLine" enabled="1" pass="0" locked="0">
+          <prop k="line_color" v="255,255,255,190"/>
+          <prop k="line_width" v="1.4"/>
+          <prop k="line_width_unit" v="MM"/>
+          <prop k="line_style" v="solid"/>
+          <prop k="capstyle" v="round"/>
+          <prop k="joinstyle" v="round"/>
+        </layer>
+        <layer class="SimpleLine" enabled="1" pass="0" locked="0">
           <prop k="line_color" v="0,114,178,255"/>
           <prop k="line_width" v="0.8"/>
           <prop k="line_width_unit" v="MM"/>
@@ -19,6 +27,14 @@
         </layer>
       </symbol>
       <symbol type="line" name="1" alpha="1" clip_to_extent="1" force_rhr="0">
+        <layer class="SimpleLine" enabled="1" pass="0" locked="0">
+          <prop k="line_color" v="255,255,255,190"/>
+          <prop k="line_width" v="1.4"/>
+          <prop k="line_width_unit" v="MM"/>
+          <prop k="line_style" v="solid"/>
+          <prop k="capstyle" v="round"/>
+          <prop k="joinstyle" v="round"/>
+        </layer>
         <layer class="SimpleLine" enabled="1" pass="0" locked="0">
           <prop k="line_color" v="240,163,10,255"/>
           <prop k="line_width" v="0.8"/>
@@ -32,6 +48,14 @@
         </layer>
       </symbol>
       <symbol type="line" name="2" alpha="1" clip_to_extent="1" force_rhr="0">
+        <layer class="SimpleLine" enabled="1" pass="0" locked="0">
+          <prop k="line_color" v="255,255,255,190"/>
+          <prop k="line_width" v="1.2"/>
+          <prop k="line_width_unit" v="MM"/>
+          <prop k="line_style" v="solid"/>
+          <prop k="capstyle" v="round"/>
+          <prop k="joinstyle" v="round"/>
+        </layer>
         <layer class="SimpleLine" enabled="1" pass="0" locked="0">
           <prop k="line_color" v="59,59,59,255"/>
           <prop k="line_width" v="0.6"/>

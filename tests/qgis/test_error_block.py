@@ -65,6 +65,8 @@ def test_the_nature_of_errors(used, tmp_path):
     assert said == ["student", 12.5, -0.5, "means"]
     found = used(VERTICAL_ACCURACY=1.0, GEOLOGIC_VARIATION=0.0, TAILS="auto", SAMPLES_OR_MEANS="auto", SHARED_BIAS=0.0)
     assert "shared_bias" not in found and "correlation_length" not in found
+    found = used(RIDGE_GAIN=0.125)
+    assert found["ridge_gain"] == 0.125 and "typical_m" in found["geologic_variation"]["from_dem"]
 
 
 def test_products_stand_for_what_was_not_said(used, tmp_path):

@@ -31,6 +31,7 @@ def test_each_two_once(run, dem, masts, log):
     assert [line["status"] for line in lines] == ["ok", "ok", "outside", "ok", "outside", "outside"]
     assert results["COUNT_UNKNOWN"] == 3 and any("3 pairs" in text for text in log.warnings)
     assert sum(results[f"COUNT_{word}"] for word in ("VISIBLE", "UNCERTAIN", "HIDDEN")) == 3
+    assert any(text.startswith("6 lines: ") and text.endswith("at a confidence of 0.95.") for text in log.infos)
     names = [field.name() for field in results["OUTPUT"].fields()]
     assert names == [field.name() for field in results["OUTPUT_TABLE"].fields()]
     assert not any(name.startswith(("probability", "fresnel")) for name in names)
@@ -42,6 +43,19 @@ def test_each_two_once(run, dem, masts, log):
         assert line["distance"] == pytest.approx(line.geometry().length(), rel=1e-3)
         assert 0.0 < line["critical_share"] < 1.0 and line["verdict"] in ("hidden", "uncertain", "visible")
         assert line["critical_share"] * line["distance"] == pytest.approx(line["critical_distance"])
+
+
+def test_critical_places(run, dem, masts):
+    results = run("intervisibility", INPUT=dem, POINTS_A=masts, OUTPUT_CRITICAL="memory:", **COMMON)
+    judged = [line for line in results["OUTPUT"].getFeatures() if line["status"] == "ok"]
+    places = list(results["OUTPUT_CRITICAL"].getFeatures())
+    assert len(judged) == len(places) == 3
+    for line, place in zip(judged, places):
+        assert line.attributes() == place.attributes()
+        point = place.geometry().asPoint()
+        assert (point.x(), point.y()) == (line["critical_x"], line["critical_y"])
+        start = line.geometry().asPolyline()[0]
+        assert start.distance(point) == pytest.approx(line["critical_distance"], rel=1e-3)
 
 
 def test_with_another_layer_probability_and_radio(run, dem, masts, observers):

@@ -41,7 +41,7 @@ def test_all_pairs(run, dem, observers, targets, tmp_path):
     counts = [results[f"COUNT_{word}"] for word in ("VISIBLE", "UNCERTAIN", "HIDDEN")]
     assert sum(counts) == 6
     text = page.read_text(encoding="utf-8")
-    assert text.count("<svg") == 6 and text.count("class='critical'") == 12 and "tower a/b → hut" in text
+    assert text.count("<h2>") == 6 + 1 and text.count("class='critical'") == 12 + 1 and "tower a/b → hut" in text
     assert "left out" not in text and html.escape(results["ERROR_MODEL_USED"]) in text
 
 
@@ -91,7 +91,7 @@ def test_at_most_fifty_profiles_are_drawn(run, dem, tmp_path):
     )
     assert results["OUTPUT"].featureCount() == 60
     text = page.read_text(encoding="utf-8")
-    assert text.count("<svg") == 50 and re.search(r"first 50 are drawn; 10 were left out", text)
+    assert text.count("<h2>") == 50 + 1 and re.search(r"first 50 are drawn; 10 were left out", text)
 
 
 def test_temporary_outputs_by_default(run, dem, observers, targets):
@@ -108,4 +108,4 @@ def test_probability_and_fresnel_zone(run, dem, observers, targets, tmp_path):
         assert 0.0 <= line["fresnel_probability"] <= line["probability"] <= 1.0
         assert 0.0 <= line["blocked_bound"] <= 1.0 and line["fresnel_p"] <= line["p"] + 1e-6
     text = page.read_text(encoding="utf-8")
-    assert text.count("class='zone'") >= 6 and "the whole line is clear with P" in text and "Fresnel zone" in text
+    assert text.count("class='zone'") >= 6 and "Whole line: clear with P" in text and "Fresnel zone" in text

@@ -28,6 +28,11 @@ def test_probability_verdict_and_areas(run, dem, observers, tmp_path, log):
     assert results["AREA_EXPECTED"] == pytest.approx(numpy.nansum(p) * scenes.CELL**2, rel=2e-3)
     assert "from_dem" in json.loads(results["ERROR_MODEL_USED"])["geologic_variation"]
     assert log.fractions == sorted(log.fractions) and log.fractions[-1] == 100.0
+    whole = sum(results[f"AREA_{word}"] for word in ("VISIBLE", "UNCERTAIN", "HIDDEN"))
+    told = " ".join(log.infos)
+    assert f"Of {whole / 1e6:.4g} km² judged" in told and "at a confidence of 0.95" in told
+    assert f"{round(results['AREA_VISIBLE'], -1):,.0f} m² (" in told, "no powers of ten"
+    assert "learnt from the elevation model" in told and "Up to 200 terrains were drawn" in told
 
 
 def test_the_seed_draws(run, dem, observers):

@@ -13,6 +13,10 @@ from qgis.core import (
     QgsRasterLayer,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtTest import QSignalSpy
+
+
+_WORDS = ("from_fid", "from", "to_fid", "to", "verdict", "status")
 
 
 @pytest.fixture
@@ -63,14 +67,55 @@ def test_viewshed_outputs_are_styled(loaded, dem, observers):
     assert marker.layerType() == "SimpleMarker" and marker.color().name() == "#d53e4f"
 
 
-def test_confidence_is_transparent_where_surely_hidden(loaded, dem, observers):
-    layer = loaded("confidenceviewshed", ["OUTPUT"], INPUT=dem, OBSERVERS=observers)["OUTPUT"]
-    assert colour(layer, 0.0)[3] == 0 and colour(layer, 0.02)[3] > 80 and colour(layer, 1.0)[3] > 150
-    light = [
-        0.2126 * r + 0.7152 * g + 0.0722 * b
-        for r, g, b, _ in (colour(layer, p) for p in numpy.arange(0.05, 1.01, 0.05))
-    ]
-    assert (numpy.diff(light) > 0).all()
+@pytest.mark.parametrize("name, outputs, more", [
+    ("confidenceviewshed", ["OUTPUT"], {}),
+    ("probableviewshed", ["OUTPUT", "OUTPUT_HEIGHTS"], {"HEIGHTS": "3", "REALISATIONS": 8}),
+])  # fmt: skip
+def test_probabilities_are_in_classes_whose_borders_are_the_claims(loaded, dem, observers, name, outputs, more):
+    layers = loaded(name, outputs, INPUT=dem, OBSERVERS=observers, CONFIDENCE=0.9, **more)
+    for layer in layers.values():
+        assert colour(layer, 0.0)[3] == colour(layer, 0.0499)[3] == 0 and colour(layer, 0.051)[3] > 80
+        assert colour(layer, 0.9499) != colour(layer, 0.9501) == colour(layer, 1.0) and colour(layer, 1.0)[3] > 150
+        classes = numpy.array([colour(layer, p)[:3] for p in (0.07, 0.2, 0.4, 0.6, 0.8, 0.94, 1.0)])
+        assert (numpy.diff(classes @ [0.2126, 0.7152, 0.0722]) > 0).all(), "ever lighter"
+        labels = [label for label, _ in layer.renderer().legendSymbologyItems()]
+        assert labels[0] == "5 % and less: almost surely hidden" and labels[-1] == "95 % and more: almost surely visible"
+        assert labels[1:3] == ["5 – 10 %", "10 – 30 %"]
+
+
+def test_claims_that_lie_between_the_usual_borders(provider, dem):
+    from sightbound_qgis.styling import class_claims, style_path
+
+    layer = QgsRasterLayer(dem, "p")
+    layer.loadNamedStyle(style_path("confidence"))
+    redrawn = QSignalSpy(layer.rendererChanged)
+    class_claims(layer, 0.5)
+    assert len(redrawn) == 1, "the legend is told"
+    labels = [label for label, _ in layer.renderer().legendSymbologyItems()]
+    assert labels[1:-1] == ["25 – 30 %", "30 – 50 %", "50 – 70 %", "70 – 75 %"]
+
+
+def test_legends_learn_of_stretched_ramps(provider, dem):
+    from sightbound_qgis.styling import stretch_ramp, style_path
+
+    layer = QgsRasterLayer(dem, "sigma")
+    layer.loadNamedStyle(style_path("sigma"))
+    redrawn = QSignalSpy(layer.rendererChanged)
+    stretch_ramp(layer, 0.98)
+    assert len(redrawn) == 1
+
+
+def test_columns_have_titles_with_units(loaded, dem, observers):
+    outputs = ["OUTPUT", "OUTPUT_CRITICAL", "OUTPUT_TABLE"]
+    layers = loaded("intervisibility", outputs, INPUT=dem, POINTS_A=observers, PROBABILITY=True, REALISATIONS=8, FREQUENCY=900.0)
+    for layer in layers.values():
+        numbers = [name for name in layer.fields().names() if name not in _WORDS]
+        untitled = [name for name in numbers if layer.attributeDisplayName(layer.fields().lookupField(name)) == name]
+        assert untitled == []
+    table = layers["OUTPUT_TABLE"]
+    at = table.fields().lookupField("distance")
+    assert table.attributeDisplayName(at) == "Distance (m)"
+    assert table.editorWidgetSetup(at).config() == {"Precision": 1}
 
 
 def test_verdict_has_three_classes_that_colour_blind_people_tell_apart(loaded, dem, observers):
