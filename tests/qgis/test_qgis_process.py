@@ -97,7 +97,7 @@ def test_one_point_and_lines(qgis_process, dem, observers, tmp_path):
                         f"TARGETS={observers}", f"OUTPUT={tmp_path / 'l.gpkg'}",
                         f"OUTPUT_HTML={tmp_path / 'l.html'}")  # fmt: skip
     assert done.returncode == 0 and len(scenes.rows_of(tmp_path / "l.gpkg")) == 2, done.stderr + done.stdout
-    assert (tmp_path / "l.html").read_text(encoding="utf-8").count("<svg") == 2
+    assert (tmp_path / "l.html").read_text(encoding="utf-8").count("<svg") == 2 + 1  # and the key
 
 
 def test_bad_input_fails_and_says_why(qgis_process, dem, tmp_path):
