@@ -121,6 +121,8 @@ def _check_rows(check):
         (tr("Error that is explained by slope; by curvature"), f"{check['slope']['explained']:.0%}; {check['curvature']['explained']:.0%}"),
         (tr("Truth above the model on convex ground (m per m of curvature)"), f"{check['ridge_bias']:.3g}"),
     ]
+    if "samples_or_means" in check:
+        rows.append((tr("A cell holds, as the better model shows"), tr(check["samples_or_means"])))
     shift = check["shift"]
     if shift:
         places = tr("{dx:.3g} ± {se_dx:.2g} east, {dy:.3g} ± {se_dy:.2g} north, {dz:.3g} ± {se_dz:.2g} up").format(**shift)

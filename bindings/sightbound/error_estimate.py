@@ -108,9 +108,13 @@ def estimate_error(
         content = found.samples_or_means
         if seen is not None and seen != content:
             report["warnings"].append(f"The reference agrees better with a DEM whose cells hold {seen}, not {content}.")
+        if learnt.samples_or_means is None:
+            report["warnings"].append(
+                f"Whether a cell holds samples or means is not told by the reference; {content} is what the DEM itself looks like."
+            )
         check = core.check_with_reference(source, core_dem(better), content, bool(correct_shift), parts.next())
         learnt = core.with_check(learnt, check)
-        report["reference"] = check.details(source)
+        report["reference"] = {**check.details(source), "samples_or_means": seen or "not told"}
     if checkpoints is not None:
         places, notes = _places(source, checkpoints, layer, elevation_field, checkpoint_unit)
         completed = core.with_estimate(given._on(dem), found)

@@ -136,16 +136,19 @@ std::optional<CellContent> content_seen(const DemSource& source, const DemSource
   constexpr double kClear = 0.9;
   const Workers workers(0);
   const Georeference georeference = georeference_of(source);
-  const auto disagreement = [&](CellContent content) {
+  // Empty where no shift could be fitted: nothing is known of how well the two agree then.
+  const auto disagreement = [&](CellContent content) -> std::optional<double> {
     const ReferenceComparison comparison(source, georeference, reference, content, workers, progress);
     progress.begin(0.5, kUsualRounds);
     const std::optional<HorizontalShift> shift = shift_of(comparison, progress);
-    return shift ? shift->nmad_after : 0;
+    return shift ? std::optional(shift->nmad_after) : std::nullopt;
   };
-  const double samples = disagreement(CellContent::kSamples), means = disagreement(CellContent::kMeans);
+  const std::optional<double> samples = disagreement(CellContent::kSamples),
+                              means = disagreement(CellContent::kMeans);
   progress.finish();
-  if (means < kClear * samples) return CellContent::kMeans;
-  if (samples < kClear * means) return CellContent::kSamples;
+  if (!samples || !means) return {};
+  if (*means < kClear * *samples) return CellContent::kMeans;
+  if (*samples < kClear * *means) return CellContent::kSamples;
   return {};
 }
 

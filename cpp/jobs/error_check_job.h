@@ -42,7 +42,8 @@ ErrorCheck check_with_reference(const DemSource&, const DemSource& reference, co
                                 Progress&);
 
 // What a cell of the DEM holds, as the reference shows: with which of the two it agrees better, the shift
-// taken off. Empty where the two agree alike (within 10 % of the NMAD), as when the cells are of one size.
+// taken off. Empty where it does not tell: the two agree alike (within 10 % of the NMAD), as when the cells
+// are of one size, or the ground is too flat or too little of it was compared.
 std::optional<CellContent> content_seen(const DemSource&, const DemSource& reference, Progress&);
 
 // A shift along the axes of the DEM's CRS, metres on the ground.

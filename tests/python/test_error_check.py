@@ -287,6 +287,22 @@ def test_means_are_compared_with_means():
     assert as_samples.report["reference"]["ridge_bias"] > 0.1
 
 
+def test_a_reference_that_does_not_tell_samples_from_means_says_so():
+    z = fractal(52)
+    truth = truth_of(z)
+    same = sb.Dem((z + np.random.default_rng(1).standard_normal(z.shape)).astype(np.float32), truth.geotransform)
+    model = sb.estimate_error(same, reference=truth)
+    assert model.report["reference"]["samples_or_means"] == "not told"
+    assert model.samples_or_means == model.report["samples_or_means"]
+    assert any("not told by the reference" in note for note in model.report["warnings"])
+    for said in (
+        sb.estimate_error(same, "samples", reference=truth),
+        sb.estimate_error(same, reference=truth, error_model=sb.ErrorModel(samples_or_means="samples")),
+        sb.estimate_error(dem_of(z), reference=truth),
+    ):
+        assert not any("not told by the reference" in note for note in said.report["warnings"])
+
+
 def test_reference_of_another_crs_and_of_a_part(tmp_path):
     """A plane, in UTM and in degrees: bilinear in both, so that they differ by next to nothing."""
     wkt = system(UTM).ExportToWkt()
