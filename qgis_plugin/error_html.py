@@ -47,6 +47,8 @@ def _in_words(model):
         bias = model.shared_bias
         higher = tr("{:.3g} m too high") if bias > 0 else tr("{:.3g} m too low")
         told.append(tr("On the whole it is {}.").format(higher.format(abs(bias))))
+        if check["correction"]["taken_off"]:
+            told.append(tr("All this is said of the model with the shift taken off, and of no other."))
     elif report["rounding"]:
         told.append(tr("Its heights are rounded, which adds {:.3g} m.").format(report["rounding"]))
     else:

@@ -121,8 +121,27 @@ TEST(CheckWithPoints, ASlopeThatLooksOneWayTellsNoShift) {
   const Tilted tilted(40);
   const ErrorCheck found = with_points(*tilted.dem, tilted.points);
   EXPECT_FALSE(found.shift);
-  EXPECT_FALSE(found.shift_corrected);
+  EXPECT_FALSE(found.corrected);
   EXPECT_TRUE(says(found.warnings.front(), "cannot be told"));
+}
+
+TEST(CheckWithPoints, WithoutAShiftTheBiasAloneIsTakenOff) {
+  const Tilted tilted(41);
+  ErrorCheckOptions options;
+  const ErrorCheck as_it_is = with_points(*tilted.dem, tilted.points);
+  options.correct_shift = true;
+  const ErrorCheck corrected = with_points(*tilted.dem, tilted.points, options);
+  EXPECT_TRUE(corrected.corrected);
+  EXPECT_EQ(corrected.correction.x, 0);
+  EXPECT_EQ(corrected.correction.z, as_it_is.statistics.median);
+  EXPECT_EQ(as_it_is.correction.z, as_it_is.statistics.median);
+  EXPECT_NEAR(corrected.statistics.median, 0, 1e-12);
+  Tilted high(41);
+  for (Xyz& point : high.points) point.z -= 45;
+  EXPECT_TRUE(says(with_points(*high.dem, high.points, options).warnings.back(), "m higher than the truth"));
+  options.correction = Correction{0, 0, 1};  // told by something else
+  EXPECT_NEAR(with_points(*tilted.dem, tilted.points, options).statistics.median,
+              as_it_is.statistics.median - 1, 1e-12);
 }
 
 TEST(CheckWithPoints, PlacesOutsideAndOnHolesAreLeftOutAndCounted) {
@@ -155,13 +174,13 @@ TEST(CheckWithReference, FindsTheShiftThatWasPutIn) {
   EXPECT_NEAR(found.shift->y, kFine, 0.01);
   EXPECT_NEAR(found.shift->z, 2, 0.01);
   EXPECT_TRUE(found.shift->is_significant());
-  EXPECT_FALSE(found.shift_corrected);
+  EXPECT_FALSE(found.corrected);
   EXPECT_TRUE(says(found.warnings.front(), "11.2 m sideways"));
   EXPECT_GT(found.statistics.nmad, 0.5);
 
   options.correct_shift = true;
   const ErrorCheck corrected = with_reference(*shifted, *reference, options);
-  EXPECT_TRUE(corrected.shift_corrected);
+  EXPECT_TRUE(corrected.corrected);
   EXPECT_NEAR(corrected.statistics.median, 0, 0.01);
   EXPECT_LT(corrected.statistics.nmad, 0.02);
 }
