@@ -51,8 +51,14 @@ py::object as_dict(const ErrorCheck& check, const DemSource& dem) {
   const MapShift shift = on_map(*check.shift, dem);
   return py::dict("dx"_a = shift.east, "dy"_a = shift.north, "dz"_a = shift.up, "se_dx"_a = shift.se_east,
                   "se_dy"_a = shift.se_north, "se_dz"_a = shift.se_up,
-                  "significant"_a = check.shift->is_significant(), "corrected"_a = check.shift_corrected,
+                  "significant"_a = check.shift->is_significant(), "corrected"_a = check.corrected,
                   "nmad_before"_a = check.shift->nmad_before, "nmad_after"_a = check.shift->nmad_after);
+}
+
+py::dict correction_of(const ErrorCheck& check, const DemSource& dem) {
+  const MapShift correction = on_map(check.correction, dem);
+  return py::dict("dx"_a = correction.east, "dy"_a = correction.north, "dz"_a = correction.up,
+                  "taken_off"_a = check.corrected);
 }
 
 py::dict details(const ErrorCheck& check, const DemSource& dem) {
@@ -68,6 +74,7 @@ py::dict details(const ErrorCheck& check, const DemSource& dem) {
   out["curvature"] = as_dict(check.curvature);
   out["variogram"] = as_dict(check.variogram, check);
   out["shift"] = as_dict(check, dem);
+  out["correction"] = correction_of(check, dem);
   out["left_out"] = check.left_out;
   out["equal_level"] = check.equal_level;
   out["warnings"] = check.warnings;
@@ -110,17 +117,19 @@ void bind_check(py::module_& m) {
         return py::make_tuple(places, read.notes);
       },
       "dem"_a, "path"_a, "layer"_a, "elevation_field"_a, "vertical_unit"_a, "progress"_a);
+  // `before`: whose correction is taken off, whatever shift the points tell.
   m.def(
       "check_with_points",
       [](const std::shared_ptr<DemSource>& dem, const ErrorModel& completed, const DoubleArray& points,
-         bool correct_shift, py::object progress) {
+         bool correct_shift, const ErrorCheck* before, py::object progress) {
+        ErrorCheckOptions options = options_of("samples", correct_shift);
+        if (before != nullptr) options.correction = before->correction;
         return ProgressBridge(std::move(progress))
-            .run([&, model = completed, places = places_of(points),
-                  options = options_of("samples", correct_shift)](Progress& p) {
+            .run([&, model = completed, places = places_of(points)](Progress& p) {
               return check_with_points(*dem, model, places, options, p);
             });
       },
-      "dem"_a, "completed"_a, py::arg("points").noconvert(), "correct_shift"_a, "progress"_a);
+      "dem"_a, "completed"_a, py::arg("points").noconvert(), "correct_shift"_a, "before"_a, "progress"_a);
   m.def(
       "check_with_reference",
       [](const std::shared_ptr<DemSource>& dem, const std::shared_ptr<DemSource>& reference,

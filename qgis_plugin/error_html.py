@@ -48,6 +48,8 @@ def in_words(model):
         bias = model.shared_bias
         higher = tr("On the whole it is {:.3g} m too high.") if bias > 0 else tr("On the whole it is {:.3g} m too low.")
         told.append(higher.format(abs(bias)) if bias else tr("On the whole it is neither too high nor too low."))
+        if check["correction"]["taken_off"]:
+            told.append(tr("All this is said of the model with the shift taken off, and of no other."))
     elif report["rounding"]:
         told.append(tr("Its heights are rounded, which adds {:.3g} m.").format(report["rounding"]))
     else:
@@ -122,6 +124,8 @@ def _check_rows(check):
         (tr("Error that is explained by slope; by curvature"), f"{check['slope']['explained']:.0%}; {check['curvature']['explained']:.0%}"),
         (tr("Truth above the model on convex ground (m per m of curvature)"), f"{check['ridge_bias']:.3g}"),
     ]
+    if "samples_or_means" in check:
+        rows.append((tr("A cell holds, as the better model shows"), tr(check["samples_or_means"])))
     shift = check["shift"]
     if shift:
         places = tr("{dx:.3g} ± {se_dx:.2g} east, {dy:.3g} ± {se_dy:.2g} north, {dz:.3g} ± {se_dz:.2g} up").format(**shift)

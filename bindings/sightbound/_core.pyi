@@ -143,7 +143,12 @@ def read_check_points(
     dem: DemSource, path: str, layer: str, elevation_field: str, vertical_unit: str, progress: _Progress
 ) -> tuple[npt.NDArray[np.float64], list[str]]: ...
 def check_with_points(
-    dem: DemSource, completed: ErrorModel, points: npt.NDArray[np.float64], correct_shift: bool, progress: _Progress
+    dem: DemSource,
+    completed: ErrorModel,
+    points: npt.NDArray[np.float64],
+    correct_shift: bool,
+    before: ErrorCheck | None,
+    progress: _Progress,
 ) -> ErrorCheck: ...
 def check_with_reference(
     dem: DemSource, reference: DemSource, samples_or_means: str, correct_shift: bool, progress: _Progress

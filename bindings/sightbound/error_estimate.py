@@ -55,9 +55,11 @@ def estimate_error(
         checkpoints: the path of points with elevations (any vector file, any CRS), or an array [n, 3] of x, y in the
             DEM's CRS and z in metres. At least ten.
         reference: a better DEM of at least a part, any CRS and cell size: a Dem or a path.
-        error_model: what is already known; only what it leaves None (or 0) is learnt.
+        error_model: what is already known (with correct_shift: of the corrected DEM); only what it leaves None (or 0) is
+            learnt.
         correct_shift: judge as if the DEM's shift, sideways and upwards, had been taken off: the model is then that of
-            the DEM which write_corrected() writes.
+            the DEM which write_corrected() makes of the report's "correction", and of no other. Without it the model is
+            that of `dem`. Where both are given the reference tells the correction, and check points what bias is left.
         elevation_field: the attribute of `checkpoints` that holds the elevations; None for Z of the points.
         layer: the layer of `checkpoints`; None for the only one.
         checkpoint_unit: unit of the elevations in a file: "auto" as its CRS says, else metres; "metre", "foot",
@@ -84,6 +86,7 @@ def estimate_error(
     learnt = given._core.copy()
     if samples_or_means != "auto":
         learnt.samples_or_means = samples_or_means
+    before = None
     parts = _Parts(progress, 1 + (checkpoints is not None) + 2 * (reference is not None))
     better = reference if isinstance(reference, Dem) or reference is None else read_dem(reference)
     if better is not None:
@@ -110,13 +113,17 @@ def estimate_error(
         content = found.samples_or_means
         if seen is not None and seen != content:
             report["warnings"].append(f"The reference agrees better with a DEM whose cells hold {seen}, not {content}.")
-        check = core.check_with_reference(source, core_dem(better), content, bool(correct_shift), parts.next())
-        learnt = core.with_check(learnt, check)
-        report["reference"] = check.details(source)
+        if learnt.samples_or_means is None:
+            report["warnings"].append(
+                f"Whether a cell holds samples or means is not told by the reference; {content} is what the DEM itself looks like."
+            )
+        before = core.check_with_reference(source, core_dem(better), content, bool(correct_shift), parts.next())
+        learnt = core.with_check(learnt, before)
+        report["reference"] = {**before.details(source), "samples_or_means": seen or "not told"}
     if checkpoints is not None:
         places, notes = _places(source, checkpoints, layer, elevation_field, checkpoint_unit)
         completed = core.with_estimate(given._on(dem), found)
-        check = core.check_with_points(source, completed, places, bool(correct_shift), parts.next())
+        check = core.check_with_points(source, completed, places, bool(correct_shift), before, parts.next())
         report["checkpoints"] = check.details(source)
         if better is not None and given.shared_bias == 0:
             learnt.shared_bias = report["checkpoints"]["median"]
@@ -140,7 +147,8 @@ def write_corrected(
         dem: the DEM.
         path: the file to write.
         shift: (dx, dy, dz) in metres along the axes of the CRS and upwards, DEM minus truth; or what estimate_error
-            reports as "shift".
+            reports as "correction": the shift, or the bias alone where no shift could be told. The model of what is
+            written is the one estimated with correct_shift=True; that of `dem` has a bias which it has no more.
         creation_options: of GDAL's GeoTIFF driver, as a dict or KEY=VALUE texts.
         progress: called with the fraction done; False cancels.
 

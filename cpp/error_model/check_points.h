@@ -45,6 +45,12 @@ struct Dependence {
   double explained = 0;   // share of the variance of |residual - bias| that lies between the bins
 };
 
+// What a DEM has too much, metres: along its rows, against them, and upwards. The DEM that is left without it
+// is another, with a model of its own.
+struct Correction {
+  double x = 0, y = 0, z = 0;
+};
+
 struct ErrorCheck {
   ResidualStatistics statistics;
   Tails tails = Tails::kNormal;   // of the residuals in units of their own sigma
@@ -56,9 +62,10 @@ struct ErrorCheck {
   Dependence slope, curvature;
   Variogram variogram;
   std::optional<HorizontalShift> shift;
-  bool shift_corrected = false;  // residuals are those after it was taken off
-  std::size_t left_out = 0;      // places with a height of one of the two only
-  std::size_t equal_level = 0;   // level in both and exactly equal: water or filling, left out
+  Correction correction;        // the shift; the bias alone where none could be told
+  bool corrected = false;       // the residuals are those of the DEM without it
+  std::size_t left_out = 0;     // places with a height of one of the two only
+  std::size_t equal_level = 0;  // level in both and exactly equal: water or filling, left out
   std::vector<std::string> warnings;
 };
 inline constexpr double kShownConfidences[] = {0.5, 0.6827, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.999};

@@ -3,8 +3,8 @@
 //
 // What counts for sight is how much neighbouring samples err against each other. A product that is off as a
 // whole, sideways (its circular error) or upwards, shows the same terrain elsewhere: such figures are told,
-// and left out of sigma. Where only an absolute error is published, sigma is that of it: cautious, since a
-// part of it is shared by all samples.
+// and left out of sigma. Where no relative error of neighbours is published, sigma is that of the absolute
+// one: cautious as a rule, since a part of it is shared by all samples.
 #pragma once
 
 #include <string>

@@ -32,25 +32,42 @@ std::optional<HorizontalShift> shift_of(const Comparison& comparison, Progress& 
 }
 
 template <class Comparison>
-Xy look_for_shift(const Comparison& comparison, bool correct, ErrorCheck& out, Progress& progress) {
+void look_for_shift(const Comparison& comparison, const ErrorCheckOptions& options, ErrorCheck& out,
+                    Progress& progress) {
   progress.begin(0.5, kUsualRounds);
   out.shift = shift_of(comparison, progress);
   progress.begin(0.5, 1);
+  out.corrected = options.correct_shift;
+  if (out.shift) out.correction = {out.shift->x, out.shift->y, out.shift->z};
+  if (options.correction) out.correction = *options.correction;
   if (!out.shift) {
     out.warnings.push_back(
         "Whether the DEM lies sideways of the truth cannot be told: the ground is too flat or too little of "
         "it was compared.");
-    return {};
-  }
-  out.shift_corrected = correct;
-  if (correct) return {out.shift->x, out.shift->y};
-  if (out.shift->is_significant()) {
+  } else if (!out.corrected && out.shift->is_significant()) {
     out.warnings.push_back(
         "The DEM lies " + number_text(std::hypot(out.shift->x, out.shift->y), 3) +
         " m sideways of the truth, which makes heights wrong on slopes; correct_shift takes "
         "it off.");
   }
-  return {};
+}
+
+// Of the correction what has to be known before heights are compared.
+Xy sideways(const ErrorCheck& check) {
+  return check.corrected ? Xy{check.correction.x, check.correction.y} : Xy{};
+}
+
+double bias_of(const std::vector<CheckedPlace>& places) {
+  std::vector<double> errors;
+  for (const CheckedPlace& place : places) errors.push_back(place.error);
+  return errors.size() < kFewestChecks ? 0 : statistics_of(errors).median;
+}
+
+// Where no shift was told the correction is the bias alone.
+void take_height_off(const ErrorCheckOptions& options, std::vector<CheckedPlace>& places, ErrorCheck& out) {
+  if (!out.shift && !options.correction) out.correction.z = bias_of(places);
+  if (!out.corrected) return;
+  for (CheckedPlace& place : places) place.error -= out.correction.z;
 }
 
 std::vector<PlacedError> placed(const std::vector<CheckedPlace>& places) {
@@ -60,16 +77,12 @@ std::vector<PlacedError> placed(const std::vector<CheckedPlace>& places) {
   return out;
 }
 
-void take_off(double height, std::vector<CheckedPlace>& places) {
-  for (CheckedPlace& place : places) place.error -= height;
-}
-
 void tell_of_rest(ErrorCheck& out) {
-  const double bias = std::abs(out.statistics.median);
+  const double higher = out.statistics.median + (out.corrected ? out.correction.z : 0);
+  const double bias = std::abs(higher);
   constexpr double kLargeBias = 3;  // metres, and NMADs
   if (bias > kLargeBias && bias > kLargeBias * out.statistics.nmad) {
-    out.warnings.push_back("The DEM is " + number_text(bias, 3) +
-                           (out.statistics.median > 0 ? " m higher" : " m lower") +
+    out.warnings.push_back("The DEM is " + number_text(bias, 3) + (higher > 0 ? " m higher" : " m lower") +
                            " than the truth nearly everywhere: have both the same vertical datum and unit?");
   }
   if (out.variogram.length_is_largest) {
@@ -89,10 +102,10 @@ ErrorCheck check_with_points(const DemSource& source, const ErrorModel& complete
   const Georeference georeference = georeference_of(source);
   const PointComparison comparison(source, georeference, points, workers, progress);
   ErrorCheck out;
-  const Xy shift = look_for_shift(comparison, options.correct_shift, out, progress);
-  std::vector<CheckedPlace> places = comparison.places(shift, completed);
+  look_for_shift(comparison, options, out, progress);
+  std::vector<CheckedPlace> places = comparison.places(sideways(out), completed);
   out.left_out = points.size() - places.size();
-  if (out.shift_corrected) take_off(out.shift->z, places);
+  take_height_off(options, places, out);
   judge(places, out);
   out.variogram = fit_variogram(variogram_of_places(placed(places), 0), places.size());
   tell_of_rest(out);
@@ -106,8 +119,8 @@ ErrorCheck check_with_reference(const DemSource& source, const DemSource& refere
   const Georeference georeference = georeference_of(source);
   const ReferenceComparison comparison(source, georeference, reference, options.content, workers, progress);
   ErrorCheck out;
-  const Xy shift = look_for_shift(comparison, options.correct_shift, out, progress);
-  ReferenceComparison::Found found = comparison.compare(shift);
+  look_for_shift(comparison, options, out, progress);
+  ReferenceComparison::Found found = comparison.compare(sideways(out));
   out.left_out = found.missing;
   out.equal_level = found.equal_level;
   if (found.equal_level > 0) {
@@ -119,7 +132,7 @@ ErrorCheck check_with_reference(const DemSource& source, const DemSource& refere
     out.warnings.push_back("The overlap is large: " + std::to_string(kMostCheckTiles) +
                            " tiles spread over it were compared.");
   }
-  if (out.shift_corrected) take_off(out.shift->z, found.places);
+  take_height_off(options, found.places, out);
   judge(found.places, out);
   std::vector<LagBin> bins = found.near.bins();
   for (const LagBin& bin : variogram_of_places(placed(found.places), found.near_reach)) bins.push_back(bin);
@@ -136,29 +149,51 @@ std::optional<CellContent> content_seen(const DemSource& source, const DemSource
   constexpr double kClear = 0.9;
   const Workers workers(0);
   const Georeference georeference = georeference_of(source);
-  const auto disagreement = [&](CellContent content) {
+  // Empty where no shift could be fitted: nothing is known of how well the two agree then.
+  const auto disagreement = [&](CellContent content) -> std::optional<double> {
     const ReferenceComparison comparison(source, georeference, reference, content, workers, progress);
     progress.begin(0.5, kUsualRounds);
     const std::optional<HorizontalShift> shift = shift_of(comparison, progress);
-    return shift ? shift->nmad_after : 0;
+    return shift ? std::optional(shift->nmad_after) : std::nullopt;
   };
-  const double samples = disagreement(CellContent::kSamples), means = disagreement(CellContent::kMeans);
+  const std::optional<double> samples = disagreement(CellContent::kSamples),
+                              means = disagreement(CellContent::kMeans);
   progress.finish();
-  if (means < kClear * samples) return CellContent::kMeans;
-  if (samples < kClear * means) return CellContent::kSamples;
+  if (!samples || !means) return {};
+  if (*means < kClear * *samples) return CellContent::kMeans;
+  if (*samples < kClear * *means) return CellContent::kSamples;
   return {};
 }
 
-MapShift on_map(const HorizontalShift& shift, const DemSource& source) {
-  const auto& g = source.geotransform().coefficients();
-  const double across = std::hypot(g[1], g[4]), up = -std::hypot(g[2], g[5]);
-  const Xy x_axis{g[1] / across, g[4] / across}, y_axis{g[2] / up, g[5] / up};
+namespace {
+
+// Unit vectors on the map: along the rows, and against them.
+struct Axes {
+  Xy x, y;
+
+  explicit Axes(const DemSource& source) {
+    const auto& g = source.geotransform().coefficients();
+    const double across = std::hypot(g[1], g[4]), up = -std::hypot(g[2], g[5]);
+    x = {g[1] / across, g[4] / across}, y = {g[2] / up, g[5] / up};
+  }
+};
+
+}  // namespace
+
+MapShift on_map(const Correction& correction, const DemSource& source) {
+  const Axes axes(source);
   MapShift out;
-  out.east = shift.x * x_axis.x + shift.y * y_axis.x;
-  out.north = shift.x * x_axis.y + shift.y * y_axis.y;
-  out.up = shift.z;
-  out.se_east = std::hypot(shift.se_x * x_axis.x, shift.se_y * y_axis.x);
-  out.se_north = std::hypot(shift.se_x * x_axis.y, shift.se_y * y_axis.y);
+  out.east = correction.x * axes.x.x + correction.y * axes.y.x;
+  out.north = correction.x * axes.x.y + correction.y * axes.y.y;
+  out.up = correction.z;
+  return out;
+}
+
+MapShift on_map(const HorizontalShift& shift, const DemSource& source) {
+  const Axes axes(source);
+  MapShift out = on_map(Correction{shift.x, shift.y, shift.z}, source);
+  out.se_east = std::hypot(shift.se_x * axes.x.x, shift.se_y * axes.y.x);
+  out.se_north = std::hypot(shift.se_x * axes.x.y, shift.se_y * axes.y.y);
   out.se_up = shift.se_z;
   return out;
 }

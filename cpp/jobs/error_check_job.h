@@ -27,8 +27,9 @@ inline constexpr std::size_t kMostJudgedPlaces = 400'000;  // of those compared,
 
 struct ErrorCheckOptions {
   CellContent content = CellContent::kSamples;
-  bool correct_shift = false;  // judge the residuals with the shift found taken off
-  int threads = 0;             // 0 = all cores
+  bool correct_shift = false;            // judge the DEM that is left when the shift found is taken off
+  std::optional<Correction> correction;  // that is to be taken off whatever shift is found
+  int threads = 0;                       // 0 = all cores
 };
 
 // `completed` says what lies between the samples (resolve_error.h). Points in the DEM's CRS, metres. Throws
@@ -42,7 +43,8 @@ ErrorCheck check_with_reference(const DemSource&, const DemSource& reference, co
                                 Progress&);
 
 // What a cell of the DEM holds, as the reference shows: with which of the two it agrees better, the shift
-// taken off. Empty where the two agree alike (within 10 % of the NMAD), as when the cells are of one size.
+// taken off. Empty where it does not tell: the two agree alike (within 10 % of the NMAD), as when the cells
+// are of one size, or the ground is too flat or too little of it was compared.
 std::optional<CellContent> content_seen(const DemSource&, const DemSource& reference, Progress&);
 
 // A shift along the axes of the DEM's CRS, metres on the ground.
@@ -51,6 +53,7 @@ struct MapShift {
   double se_east = 0, se_north = 0, se_up = 0;
 };
 MapShift on_map(const HorizontalShift&, const DemSource&);
+MapShift on_map(const Correction&, const DemSource&);  // without standard errors
 
 // Writes the DEM with the shift taken off: its geotransform moved, its heights (in metres) lowered by `up`.
 // Heights are not interpolated. Throws IoError, InvalidInput, Cancelled.

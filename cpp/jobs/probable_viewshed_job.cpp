@@ -147,43 +147,42 @@ Grid<std::uint8_t> asked_of(const std::vector<Post>& posts, const LoadedTerrain&
   return asked;
 }
 
+// Of the model, what a perturbed DEM is drawn from: errors of measurement alone. What lies between the
+// samples is not drawn then, nor what means leave open at their own places, which is no measurement's error.
+ErrorModel of_measurement(ErrorModel model) {
+  model.geologic_variation = 0.0;
+  model.terrain_types.reset();
+  return model;
+}
+
 // The terrains that are drawn.
 class Behind {
  public:
   Behind(const LoadedTerrain& terrain, const ProbableOptions& options, const Workers& workers,
          Progress& progress)
       : is_perturbed_(options.method == Terrains::kPerturb),
-        nothing_between_(between_samples(terrain.scene().error)),
         posterior_(is_perturbed_
                        ? Posterior()
                        : posterior(terrain.scene().heights, terrain.scene().error, workers, progress)),
         open_{posterior_.mean.empty() ? terrain.scene().heights : posterior_.mean,
-              is_perturbed_ && !perturbs_alike() ? terrain.scene().error.sampling : posterior_.spread,
-              is_perturbed_ ? nothing_between_ : terrain.scene().error,
+              is_perturbed_ && !perturbs_alike(terrain) ? terrain.scene().error.sampling : posterior_.spread,
+              terrain.scene().error,
               terrain.window().row,
               terrain.window().col,
               options.seed,
-              terrain.scene().error.surface && !is_perturbed_ ? &posterior_.rises : nullptr,
-              perturbs_alike() ? &terrain.scene().error.sampling
-                               : (posterior_.has_shared() ? &posterior_.shared : nullptr),
+              terrain.scene().error.surface ? &posterior_.rises : nullptr,
+              perturbs_alike(terrain) ? &terrain.scene().error.sampling
+                                      : (posterior_.has_shared() ? &posterior_.shared : nullptr),
               largest_draw(terrain.scene().error.tails)} {}
   const OpenTerrain& open() const { return open_; }
 
  private:
-  static ErrorField between_samples(const ErrorField& error) {
-    ErrorField nothing;
-    nothing.cell_sizes = error.cell_sizes;
-    nothing.larger_side_m = error.larger_side_m;
-    nothing.tails = error.tails;
-    nothing.noise = error.noise;
-    return nothing;
+  // All that is drawn is correlated.
+  bool perturbs_alike(const LoadedTerrain& terrain) const {
+    return is_perturbed_ && !terrain.scene().error.noise.is_independent();
   }
 
-  // All that is drawn is correlated.
-  bool perturbs_alike() const { return is_perturbed_ && !nothing_between_.noise.is_independent(); }
-
   const bool is_perturbed_;
-  const ErrorField nothing_between_;
   const Posterior posterior_;
   const OpenTerrain open_;
 };
@@ -299,12 +298,15 @@ ProbableViewshed run_probable_viewshed(const DemSource& source, const std::vecto
 
   const Georeference georeference = georeference_of(source);
   const std::vector<Post> posts = place_observers(source, georeference, observers, options.extent, progress);
-  const Plan plan = plan_memory(posts, source, model, loading, options.heights.size());
+  const auto drawn = [&](const ErrorModel& whole) {
+    return options.method == Terrains::kPerturb ? of_measurement(whole) : whole;
+  };
+  const Plan plan = plan_memory(posts, source, drawn(model), loading, options.heights.size());
   progress.begin(0.05, 1);
   const ErrorModel completed = complete_model(model, source, report.warnings, progress);
   report.error_model = completed.describe();
   progress.begin(0.05, 1);
-  const LoadedTerrain terrain(source, georeference, plan.terrain, completed, loading, report.warnings,
+  const LoadedTerrain terrain(source, georeference, plan.terrain, drawn(completed), loading, report.warnings,
                               workers, progress);
   place_eyes(posts, terrain, report);
   const Grid<std::uint8_t> asked = asked_of(posts, terrain, workers, progress);

@@ -151,13 +151,18 @@ class EstimateError(SightboundAlgorithm):
 
     def _write_corrected(self, sightbound, dem, check, parameters, context, feedback):
         path = self.parameterAsOutputLayer(parameters, "OUTPUT_CORRECTED", context)
-        shift = check["shift"]
-        if shift is None:
+        if check["shift"] is None:
             feedback.pushWarning(tr("No shift could be told; OUTPUT_CORRECTED only has the bias taken off."))
-            shift = (0.0, 0.0, check["median"])
+        if not check["correction"]["taken_off"]:
+            feedback.pushWarning(
+                tr(
+                    "The error model is that of INPUT with its shift and bias, not that of OUTPUT_CORRECTED, from which "
+                    "they are taken off. Turn CORRECT_SHIFT on for a model to use with OUTPUT_CORRECTED."
+                )
+            )
         with core_errors("OUTPUT_CORRECTED"):
             progress = Progress(feedback, 70.0, 80.0)
-            sightbound.write_corrected(dem, path, shift, creation_options=self.options, progress=progress)
+            sightbound.write_corrected(dem, path, check["correction"], creation_options=self.options, progress=progress)
         style_when_loaded(context, path, "surface", stretch=0.98)
         return path
 

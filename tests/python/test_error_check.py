@@ -266,6 +266,37 @@ def test_corrected_dem_lies_where_the_truth_is(tmp_path):
         sb.write_corrected(dem, tmp_path / "no.tif", (1.0, 2.0))
 
 
+def used_together(dem, model, place):
+    """The ground that absolute heights are compared with."""
+    line = sb.line_of_sight(dem, place, (place[0] + 100.0, place[1]), 500.0, 500.0, model, height_reference="absolute")
+    return line.report["observer_ground"]
+
+
+@pytest.mark.parametrize("known", ["reference", "points", "both", "points on a slope"])
+def test_a_model_belongs_to_one_dem(tmp_path, known):
+    """Corrected DEM with its model, and the DEM as it is with its own: the same ground, which is the truth's."""
+    slope = "slope" in known  # which looks one way: no shift can be told
+    z, right = (np.fromfunction(lambda r, c: 0.5 * c, (SIZE, SIZE)), 0) if slope else (fractal(45, height=20.0), 1)
+    dem, truth = dem_of(z, 2.5 + (0.0 if slope else 0.05) * correlated(46, KEPT, 6.0), right), truth_of(z)
+    places, rows, cols = points_on(truth, 600)
+    inside = (rows < SIZE - 16) & (cols < SIZE - 16)
+    lower = 1.0 if known == "both" else 0.0  # the points' datum, which counts
+    given = {} if known == "reference" else {"checkpoints": np.c_[places, z[rows, cols] - lower][inside]}
+    if known in ("reference", "both"):
+        given["reference"] = truth
+    exact = EXACT if slope else None
+    as_it_is, moved = (sb.estimate_error(dem, error_model=exact, correct_shift=on, **given) for on in (False, True))
+    told = moved.report["reference" if "reference" in given else "checkpoints"]
+    assert told["correction"]["taken_off"] and (told["shift"] is None) == slope
+    assert moved.shared_bias == pytest.approx(lower, abs=0.1)
+    assert as_it_is.shared_bias == pytest.approx(2.5 + lower, abs=0.15)
+    sb.write_corrected(dem, tmp_path / "moved.tif", told["correction"])
+    row, col = 60 * STEP, 60 * STEP + right  # a sample of the DEM
+    east, north, true = (col + 0.5) * CELL, (SIZE - row - 0.5) * CELL, z[row, col] - lower
+    assert used_together(sb.read_dem(tmp_path / "moved.tif"), moved, (east, north)) == pytest.approx(true, abs=0.3)
+    assert used_together(dem, as_it_is, (east - right * CELL, north)) == pytest.approx(true, abs=0.3)
+
+
 # ---- a better DEM of other kinds
 
 
@@ -285,6 +316,22 @@ def test_means_are_compared_with_means():
     assert found[0] < 0.1 * found[1]
     # Means plane off what is convex: the truth stands above them there.
     assert as_samples.report["reference"]["ridge_bias"] > 0.1
+
+
+def test_a_reference_that_does_not_tell_samples_from_means_says_so():
+    z = fractal(52)
+    truth = truth_of(z)
+    same = sb.Dem((z + np.random.default_rng(1).standard_normal(z.shape)).astype(np.float32), truth.geotransform)
+    model = sb.estimate_error(same, reference=truth)
+    assert model.report["reference"]["samples_or_means"] == "not told"
+    assert model.samples_or_means == model.report["samples_or_means"]
+    assert any("not told by the reference" in note for note in model.report["warnings"])
+    for said in (
+        sb.estimate_error(same, "samples", reference=truth),
+        sb.estimate_error(same, reference=truth, error_model=sb.ErrorModel(samples_or_means="samples")),
+        sb.estimate_error(dem_of(z), reference=truth),
+    ):
+        assert not any("not told by the reference" in note for note in said.report["warnings"])
 
 
 def test_reference_of_another_crs_and_of_a_part(tmp_path):

@@ -173,6 +173,16 @@ def test_perturbed_terrains_are_the_dem_with_noise(dem):
     assert any("vertical_rmse" in warning for warning in without.report["warnings"])
 
 
+def test_of_means_only_the_measurement_error_is_added(dem):
+    means, samples = (sb.ErrorModel(samples_or_means=content, tails="normal") for content in ("means", "samples"))
+    of_means, of_samples = (
+        sb.probable_viewshed(dem, place(30, 30), 5, method="perturb", error_model=model, realisations=64) for model in (means, samples)
+    )
+    assert np.array_equal(of_means.probability, of_samples.probability)
+    assert set(np.unique(of_means.probability)) == {0, 1}
+    assert any("no measurement error" in warning for warning in of_means.report["warnings"])
+
+
 def test_fine_ground_takes_sight(dem):
     with_it, without = (sb.probable_viewshed(dem, place(30, 30), 1.7, realisations=400, refinement=n) for n in (1, 0))
     assert with_it.probability.mean() < without.probability.mean()

@@ -96,11 +96,41 @@ def test_a_better_dem_tells_the_shift_and_it_is_taken_off(run, dem, better, tmp_
     assert results["SHIFT_Y"] == pytest.approx(0.0, abs=0.1)
     assert results["SHIFT_Z"] == pytest.approx(2.0, abs=0.1)
     assert any("sideways" in warning for warning in log.warnings)
+    assert any("not that of OUTPUT_CORRECTED" in warning for warning in log.warnings)
     heights, raster = scenes.read(moved)
     assert raster.GetGeoTransform()[0] == pytest.approx(scenes.WEST + 6.0, abs=0.1)
     assert numpy.allclose(heights, scenes.hills() - results["SHIFT_Z"], atol=1e-3)
     again = run("estimateerror", INPUT=moved, REFERENCE=better)
     assert again["RMSE"] < 0.1 < results["RMSE"]
+
+
+@pytest.mark.parametrize("correct", [False, True])
+def test_the_model_belongs_to_one_dem(run, dem, points, tmp_path, correct):
+    """Check points on a DEM that is 1.5 m too high: the bias goes off once, whichever of the two DEMs the model is of."""
+    log, moved = scenes.Log(), str(tmp_path / "moved.tif")
+    results = run("estimateerror", feedback=log, INPUT=dem, CHECKPOINTS=points, CORRECT_SHIFT=correct, OUTPUT_CORRECTED=moved)
+    bias = json.loads(results["ERROR_MODEL_USED"]).get("shared_bias", 0.0)
+    assert bias == pytest.approx(0.0 if correct else 1.5, abs=1e-3)
+    heights, _ = scenes.read(moved)
+    assert numpy.allclose(heights, scenes.hills() - 1.5, atol=1e-3)
+    assert any("not that of OUTPUT_CORRECTED" in warning for warning in log.warnings) == (not correct)
+
+
+def test_without_a_shift_the_bias_alone_goes_off_and_once(run, tmp_path):
+    row, col = numpy.mgrid[0 : scenes.ROWS, 0 : scenes.COLS]
+    slope = (100.0 + 2.0 * col).astype("float32")
+    grid = (scenes.WEST, scenes.CELL, 0.0, scenes.NORTH, 0.0, -scenes.CELL)
+    tilted = str(scenes.write_raster(tmp_path / "tilted.tif", slope, grid, scenes.UTM))
+    places = [
+        (scenes.WEST + (c + 0.5) * scenes.CELL, scenes.NORTH - (r + 0.5) * scenes.CELL, 98.0 + 2.0 * c)
+        for r in range(3, 20, 4) for c in range(3, 20, 4)
+    ]
+    points = write_layer(tmp_path / "on_slope.gpkg", places)
+    log, moved = scenes.Log(), str(tmp_path / "moved.tif")
+    results = run("estimateerror", feedback=log, INPUT=tilted, CHECKPOINTS=points, CORRECT_SHIFT=True, OUTPUT_CORRECTED=moved)
+    assert "SHIFT_X" not in results and any("only has the bias taken off" in warning for warning in log.warnings)
+    assert json.loads(results["ERROR_MODEL_USED"]).get("shared_bias", 0.0) == pytest.approx(0.0, abs=1e-3)
+    assert numpy.allclose(scenes.read(moved)[0], slope - 2.0, atol=1e-3)
 
 
 def test_the_model_serves_the_others(run, dem, better, tmp_path):

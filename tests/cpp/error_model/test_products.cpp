@@ -20,6 +20,14 @@ TEST(Products, PublishedFiguresBecomeOneStandardDeviationOfASample) {
   EXPECT_NEAR(sigma_of("copernicus_glo30_steep"), 2 * sigma_of("copernicus_glo30"), 1e-12);
 }
 
+// The two figures that are published of one thing agree.
+TEST(Products, FiguresAgreeWithTheirOtherForm) {
+  EXPECT_NEAR(product_from("ned").published_m * 1.9600, 3.04, 0.005);           // at 95 %
+  EXPECT_NEAR(product_from("aster_gdem3").published_m * 1.9600, 16.70, 0.005);  // LE95
+  const double srtm[] = {5.6, 6.0, 6.2, 8.0, 9.0, 6.2};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(products()[i].published_m, srtm[i]) << products()[i].name;
+}
+
 TEST(Products, EachIsAWholeModelWithItsSource) {
   std::set<std::string> names;
   for (const Product& product : products()) {

@@ -158,6 +158,24 @@ TEST(ProbableViewshed, D1SameBytesForAnyThreadsAndExtent) {
   EXPECT_FALSE(same(one.probability, dem.seen(at(60, 70), model, options).probability));
 }
 
+// What a mean leaves open at its own place is no measurement's error: nothing of it is added to the DEM.
+TEST(ProbableViewshed, PerturbingADemOfMeansAddsMeasurementErrorAlone) {
+  const Dem dem(60, 70, [](int r, int c) { return 5 * hills(r, c, 0.7, 5); });
+  ProbableOptions options = flat(48);
+  options.method = Terrains::kPerturb;
+  ErrorModel means, samples;  // learnt
+  means.samples_or_means = CellContent::kMeans, samples.samples_or_means = CellContent::kSamples;
+  means.tails = samples.tails = Tails::kNormal;
+  const ProbableViewshed nothing = dem.seen(at(30, 30), means, options);
+  for (const float p : nothing.probability.values()) EXPECT_TRUE(p == 0 || p == 1);
+  EXPECT_TRUE(says(nothing.report.warnings.back(), "holds no measurement error"));
+  means.vertical_rmse = samples.vertical_rmse = 0.5;
+  const ProbableViewshed of_means = dem.seen(at(30, 30), means, options);
+  EXPECT_TRUE(same(of_means.probability, dem.seen(at(30, 30), samples, options).probability));
+  EXPECT_FALSE(same(of_means.probability, nothing.probability));
+  EXPECT_TRUE(says(of_means.report.error_model, "means"));
+}
+
 TEST(ProbableViewshed, SeveralObserversSeeMore) {
   const Dem dem(60, 60, [](int r, int c) { return 5 * hills(r, c, 0.7, 9); });
   Progress progress;
@@ -201,7 +219,7 @@ TEST(ProbableViewshed, HolesClaimNothing) {
   EXPECT_EQ(made.verdict.at(20, 28), kVisible);
   EXPECT_EQ(made.verdict.at(20, 60), kUncertain);
   EXPECT_NEAR(made.probability.at(20, 60), 0.5, 0.06);
-  EXPECT_EQ(made.verdict.at(8, 60), kHidden);  // by the wall before the hole
+  EXPECT_EQ(made.verdict.at(8, 60), kHidden);   // by the wall before the hole
   EXPECT_EQ(made.verdict.at(39, 70), kHidden);  // by the wall behind it
   EXPECT_TRUE(std::isnan(made.probability.at(20, 30)));
 }
