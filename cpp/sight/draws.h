@@ -37,14 +37,12 @@ inline DrawKey draw_key(std::uint64_t seed, std::int64_t row, std::int64_t col) 
   return {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(x >> 32)};
 }
 
-// Shared by a tile; half cells.
-#ifndef TILE_HALF
-#define TILE_HALF 4
-#endif
+// What is the same for 2 x 2 cells: real steps stand together. Places are half cells.
 inline DrawKey tile_key(std::uint64_t seed, std::int64_t row, std::int64_t col) {
   constexpr std::uint64_t kTileDraws = 0x74696c65;
-  const auto tile = [](std::int64_t half) { return (half + (std::int64_t{1} << 40)) / TILE_HALF; };
-  return draw_key(seed ^ kTileDraws, tile(row), tile(col));
+  constexpr int kTile = 4;
+  constexpr std::int64_t kEven = std::int64_t{1} << 40;  // places before the first: downward, too
+  return draw_key(seed ^ kTileDraws, (row + kEven) / kTile, (col + kEven) / kTile);
 }
 
 // 32 bits of one realisation: two rounds of a mixing function with little bias (Wellons 2018).
@@ -120,31 +118,39 @@ inline float largest_draw(Tails tails) {
   return tails == Tails::kNormal ? kLargestDraw : kLargestOfHeavyTails;
 }
 
-// Laplace of standard deviation 1: the inverse of its distribution function.
-SIGHTBOUND_INLINE float laplace_from(std::uint32_t bits) {
-  const float x = (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1p-22f - 1;
-  const float size = 0.70710678119f * minus_log(1 - std::abs(x));
-  return std::copysign(size < kLargestOfHeavyTails ? size : kLargestOfHeavyTails, x);
-}
-
+// Heavier tails are normal draws whose scale is drawn too (Andrews and Mallows 1974): of standard deviation 1,
+// its square exponential for Laplace, 3 / chi^2 of five degrees of freedom for Student's t.
 SIGHTBOUND_INLINE float laplace_scale_from(std::uint32_t bits) {
-  const float x = (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1p-23f;
+  const float x = (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1p-23f;  // in (0, 1)
   return std::sqrt(minus_log(x));
 }
+// chi^2 / 5 = (1 - 2 / 45 + n sqrt(2 / 45))^3 (Wilson and Hilferty 1931), where that is not too near to 0.
 SIGHTBOUND_INLINE float student_scale_from(std::uint32_t bits) {
-  const float n = normal_from(bits);
-  const float w = 0.95555556f + 0.21081851f * n;
-  const float c = w > 0.33f ? w : 0.33f;
-  return std::sqrt(0.6f / (c * c * c));
+  const float root = 0.95555556f + 0.21081851f * normal_from(bits), least = 0.33f;
+  const float chi = root > least ? root : least;
+  return std::sqrt(0.6f / (chi * chi * chi));
 }
 
-// Student's t of five degrees of freedom over its standard deviation, from a normal draw: a polynomial whose
-// quantiles of 68, 90, 95, 99 and 99.7 % are within 1 %; standard deviation 0.997.
-SIGHTBOUND_INLINE float student_from(std::uint32_t bits) {
-  const float n = normal_from(bits), n2 = n * n;
-  const float t = n * (0.8219857f + n2 * (0.03599875f + n2 * 0.00354747f));
-  const float least = t > -kLargestOfHeavyTails ? t : -kLargestOfHeavyTails;
-  return least < kLargestOfHeavyTails ? least : kLargestOfHeavyTails;
+SIGHTBOUND_INLINE void fill_normal(const DrawKey& key, std::uint32_t first, Lanes& out) {
+  for (int l = 0; l < kLanes; ++l)
+    out.v[l] = normal_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
+}
+
+// Makes heavy tails of normal draws.
+SIGHTBOUND_INLINE void scale_tails(Tails tails, const DrawKey& key, std::uint32_t first, Lanes& x) {
+  Lanes scale;
+  if (tails == Tails::kLaplace) {
+    for (int l = 0; l < kLanes; ++l)
+      scale.v[l] = laplace_scale_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
+  } else {
+    for (int l = 0; l < kLanes; ++l)
+      scale.v[l] = student_scale_from(draw_bits(key, first + static_cast<std::uint32_t>(l)));
+  }
+  for (int l = 0; l < kLanes; ++l) {
+    const float scaled = x.v[l] * scale.v[l],
+                least = scaled > -kLargestOfHeavyTails ? scaled : -kLargestOfHeavyTails;
+    x.v[l] = least < kLargestOfHeavyTails ? least : kLargestOfHeavyTails;
+  }
 }
 
 }  // namespace sightbound

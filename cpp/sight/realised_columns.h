@@ -126,24 +126,10 @@ SIGHTBOUND_INLINE void draw_about(const Departure& own, std::uint32_t first, con
     for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l);
     return;
   }
-  const auto normal = [&](int l) {
-    return normal_from(draw_bits(own.key, first + static_cast<std::uint32_t>(l)));
-  };
-  const auto scale = [&](int l) { return draw_bits(own.scale, first + static_cast<std::uint32_t>(l)); };
-  const auto add = [&](const auto& from) {
-    for (int l = 0; l < kLanes; ++l) {
-      const float x = from(l);
-      const float least = x > -kLargestOfHeavyTails ? x : -kLargestOfHeavyTails;
-      out.v[l] = middle(l) + own.spread * (least < kLargestOfHeavyTails ? least : kLargestOfHeavyTails);
-    }
-  };
-  if (own.tails == Tails::kNormal) {
-    for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l) + own.spread * normal(l);
-  } else if (own.tails == Tails::kLaplace) {
-    add([&](int l) { return normal(l) * laplace_scale_from(scale(l)); });
-  } else {
-    add([&](int l) { return normal(l) * student_scale_from(scale(l)); });
-  }
+  Lanes x;
+  fill_normal(own.key, first, x);
+  if (own.tails != Tails::kNormal) scale_tails(own.tails, own.scale, first, x);
+  for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l) + own.spread * x.v[l];
 }
 
 // Adds what is drawn.
