@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "error_model/residual_growth.h"
-#include "error_model/self_check.h"
 #include "support/terrains.h"
 
 namespace sightbound {
@@ -12,7 +11,6 @@ namespace {
 
 using testing::grid_from;
 using testing::hills;
-using testing::noise;
 
 // Of every `k`-th place, or means over k x k.
 Grid<float> coarse(int side, int k, bool means) {
@@ -47,29 +45,6 @@ TEST(ResidualGrowth, ACubicHasTheGainOfOne) {
   ResidualGrowth growth;
   growth.add(grid_from(64, 64, [](int r, int c) { return 0.001 * r * r * r + 0.02 * c * c; }));
   EXPECT_NEAR(growth.ridge_gain(), 0.125, 1e-3);
-}
-
-TEST(SelfCheck, OfGaussianGroundIsNormalAndHolds) {
-  Progress progress;
-  const Grid<float> z = grid_from(256, 256, [](int r, int c) { return hills(r, c, 0.8, 9); });
-  ResidualGrowth growth;
-  growth.add(z);
-  SelfCheck check(growth.exponent(1), growth.rms(0));
-  check.add(z, progress);
-  EXPECT_GT(check.places(), 10000u);
-  EXPECT_NEAR(check.scale(), 1, 0.2);
-  EXPECT_LT(check.quantile(0.5), check.quantile(0.95));
-}
-
-TEST(SelfCheck, FindsHeavyTails) {
-  // Level ground with a sudden rise here and there.
-  Progress progress;
-  const Grid<float> z = grid_from(256, 256, [](int r, int c) {
-    return 0.05 * noise(r, c, 1) + (noise(r, c, 2) < 0.01 ? 5 * noise(r, c, 3) : 0);
-  });
-  SelfCheck check(0.5, 1);
-  check.add(z, progress);
-  EXPECT_NE(check.tails(), Tails::kNormal);
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ struct Case {
   double col, row;
   float spread;  // of the samples
   bool holes, is_refined, is_learnt;
+  bool is_steep = false;  // heavy tails, steps that count, errors that are correlated
 };
 class ProbableViews : public ::testing::TestWithParam<Case> {};
 
@@ -65,6 +66,11 @@ TEST_P(ProbableViews, see_the_same_as_when_all_is_drawn) {
     ground.error.ridge_gain = 0.1;
   }
   ground.error.sampling = SampleField(test.spread);
+  if (test.is_steep) {
+    ground.error.tails = Tails::kLaplace;
+    ground.error.steps = {0.3, 2.5};
+    ground.error.noise = CorrelatedNoise(40, {10, 10});
+  }
   Progress progress;
   const Posterior behind = posterior(ground.heights, ground.error, Workers(1), progress);
   const Refinement refinement = test.is_refined ? Refinement::end_zones() : Refinement::none();
@@ -74,7 +80,9 @@ TEST_P(ProbableViews, see_the_same_as_when_all_is_drawn) {
                       5,
                       7,
                       3,
-                      test.is_learnt ? &behind.rises : nullptr};
+                      test.is_learnt ? &behind.rises : nullptr,
+                      behind.has_shared() ? &behind.shared : nullptr,
+                      largest_draw(ground.error.tails)};
   const Seen made = look(terrain, test.col, test.row, refinement);
   terrain.largest_draw = 1e4f;
   const Seen everywhere = look(terrain, test.col, test.row, refinement);
@@ -89,7 +97,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{45, 35, 0, false, true, false}, Case{45.3, 35.6, 0.2f, false, true, false},
                       Case{0, 0, 0.2f, true, true, false}, Case{89, 20, 0, true, false, false},
                       Case{30.5, 69, 0.5f, false, false, false}, Case{45, 35, 0, true, true, true},
-                      Case{0.4, 60.5, 0.1f, false, true, true}));
+                      Case{0.4, 60.5, 0.1f, false, true, true},
+                      Case{45.3, 35.6, 0.2f, true, true, true, true}));
 
 }  // namespace
 }  // namespace sightbound
