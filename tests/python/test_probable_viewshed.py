@@ -128,13 +128,14 @@ def test_wrong_arguments_are_named(dem, arguments, message):
 
 
 def test_cells_are_left_when_they_are_settled(dem):
-    """Within the precision of what all realisations say, and with the same claims but where these are close to the bound."""
+    """Within the precision of what all realisations say (0.03 is said at 95 %: one cell of hundreds may lie beyond), and with the
+    same claims but where these are close to the bound."""
     early = sb.probable_viewshed(dem, place(30, 30), 5, realisations=2000)
     whole = sb.probable_viewshed(dem, place(30, 30), 5, realisations=2000, precision=0)
     assert set(np.unique(whole.realisations)) == {2000} and set(np.unique(early.realisations)) <= {192, 384, 768, 1536, 2000}
     assert (early.realisations < 2000).mean() > 0.4
     off = abs(early.probability - whole.probability)
-    assert off.max() <= 0.03 and (off[early.realisations == 2000] == 0).all()
+    assert (off > 0.03).mean() < 0.005 and off.max() < 0.05 and (off[early.realisations == 2000] == 0).all()
     claimed = early.verdict != 1
     assert (early.verdict == whole.verdict)[claimed & (whole.verdict != 1)].all() and claimed.mean() > 0.5
     error = np.sqrt(early.probability * (1 - early.probability) / early.realisations)
@@ -171,6 +172,49 @@ def test_perturbed_terrains_are_the_dem_with_noise(dem):
     without = sb.probable_viewshed(dem, place(30, 30), 5, method="perturb", error_model=sb.ErrorModel(0, geologic_variation=0))
     assert set(np.unique(without.probability)) == {0, 1}
     assert any("vertical_rmse" in warning for warning in without.report["warnings"])
+
+
+def in_a_row(z, eye, target):
+    """Does each realisation (a row of `z`: heights one sample apart) see each sample to the right of sample 0, for eye and
+    target so high above the ground? Flat Earth."""
+    x = np.arange(1, z.shape[1]) * CELL
+    slope = (z[:, 1:] - z[:, :1] - eye) / x
+    horizon = np.maximum.accumulate(np.column_stack([np.full(len(z), -np.inf), slope[:, :-1]]), axis=1)
+    return slope + target / x >= horizon
+
+
+@pytest.mark.parametrize(("length", "sigma"), [(0.0, 1.0), (30.0, 2.0), (120.0, 5.0)])
+def test_correlated_errors_are_drawn_as_such(length, sigma):
+    """Against Cholesky's factor of the covariance, along the observer's row: there the line of sight passes over samples alone."""
+    cols, eye, target = 24, 1.7, 1.7
+    distance = np.abs(np.subtract.outer(np.arange(cols), np.arange(cols))) * CELL
+    covariance = np.exp(-distance / length) if length else np.eye(cols)
+    noise = np.random.default_rng(1).normal(size=(40000, cols)) @ np.linalg.cholesky(covariance + 1e-12 * np.eye(cols)).T
+    expected = in_a_row(sigma * noise, eye, target).mean(axis=0)
+    level = sb.Dem(np.zeros((9, cols), np.float32), (500000, CELL, 0, 5000000, 0, -CELL), crs())
+    model = sb.ErrorModel(sigma, geologic_variation=0, correlation_length=length)
+    found = sb.probable_viewshed(
+        level, place(4, 0), eye, target, error_model=model, curvature=False, method="perturb", realisations=4000, precision=0, refinement=0
+    ).probability[4, 1:]
+    assert np.ptp(expected) > 0.5  # from seen by nearly all to seen by few
+    np.testing.assert_allclose(found, expected, atol=0.06 if length else 0.03)
+
+
+def test_steps_and_levels_of_a_told_model_count(dem):
+    """Level ground that hides nothing shows more; JSON keeps both."""
+    model = sb.estimate_error(dem)
+    level = sb.ErrorModel.from_json(model.to_json().replace(f'"level_variance": {model.level_variance}', '"level_variance": 0.1'))
+    assert level.level_variance == pytest.approx(0.1)
+    assert sb.ErrorModel.from_json(level.to_json()).level_variance == level.level_variance
+    flat = sb.Dem(np.zeros((60, 60), np.float32) + np.random.default_rng(2).normal(0, 0.2, (60, 60)).astype(np.float32),
+                  (500000, CELL, 0, 5000000, 0, -CELL), crs())
+    p = [
+        np.nanmean(sb.probable_viewshed(
+            flat, place(30, 30), error_model=sb.ErrorModel(geologic_model="growth", level_variance=v, step_variance=1), realisations=256
+        ).probability)
+        for v in (0.1, 1.0)
+    ]
+    assert p[0] > p[1] + 0.02
 
 
 def test_of_means_only_the_measurement_error_is_added(dem):
