@@ -45,8 +45,9 @@ class ErrorModel:
         samples_or_means: what a cell holds: "samples" (the height of its middle) or "means" (the mean over the cell).
             None or "auto": samples, unless estimated.
         ridge_gain: how far the truth stands above the surface, in units of its curvature (-2 to 2).
-        level_variance, step_variance: factors of the variance learnt from the DEM, where the samples around stand level
-            and where they step (0 to 10). None: 1, unless estimated.
+        level_variance: factor of the variance learnt from the DEM where the samples around stand level (0 to 10). None: 1,
+            unless estimated.
+        step_variance: the same where they step.
 
     Raises:
         ValueError: a value out of range, or values that contradict each other.
