@@ -136,25 +136,7 @@ void LineInDoubt::find_nodes(const RealisedColumns& columns) {
   };
   for (const NodeLine& line : over.lines) {
     for (int minor = line.from; minor <= line.to; ++minor) {
-      const int major = line.major, m = major / 2, n = minor / 2, m1 = (major + 1) / 2, n1 = (minor + 1) / 2;
-      LineNode node;
-      node.a = sample(m, n);
-      node.is_sample = m == m1 && n == n1;
-      if (!node.is_sample) {
-        node.draw = columns.node(major, minor);
-        node.b = sample(m1, n1);
-        if (node.draw.kind == NodeDraw::Kind::kCentre) {
-          node.b = sample(m, n1);
-          node.c = sample(m1, n);
-          node.d = sample(m1, n1);
-          node.e = centre(major, minor);
-        } else if (node.draw.kind == NodeDraw::Kind::kSide) {
-          const int i = m == m1 ? 1 : 0, j = 1 - i;  // to the centres on either side
-          node.e = centre(major - i, minor - j);
-          node.f = centre(major + i, minor + j);
-        }
-      }
-      nodes.push_back(node);
+      nodes.push_back(columns.node_of(line.major, minor, sample, centre));
     }
   }
 }
@@ -178,9 +160,9 @@ void LineInDoubt::find_fine(const FineGround& ground) {
         {0.5 * (one.major + other.major), 0.5 * (one.minor + other.minor), 0.5 * (one.s + other.s)});
     return static_cast<int>(where.size()) - 1;
   };
-  const int steps = static_cast<int>(over.stops.size()) - 1;
-  for (int i = 0; i < steps; ++i) {
-    const int from_end = std::min(i, steps - 1 - i), a = over.stops[at(i)], b = over.stops[at(i + 1)];
+  const int last_stop = static_cast<int>(over.stops.size()) - 1;
+  for (int i = 0; i < last_stop; ++i) {
+    const int from_end = std::min(i, last_stop - 1 - i), a = over.stops[at(i)], b = over.stops[at(i + 1)];
     const Fineness fineness = from_end < kNearestSteps ? Fineness::kQuarters
                               : from_end < kNearSteps  ? Fineness::kHalves
                                                        : Fineness::kNone;

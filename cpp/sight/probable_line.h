@@ -35,12 +35,8 @@ struct DoubtfulPlace {
   bool unknown = false;                 // crossed in half of the realisations
 };
 
-// A node, or a sample, and the numbers of what it is drawn from, in the order of NodeParents.
-struct LineNode {
-  bool is_sample = false;  // the first of its parents
-  NodeDraw draw{};
-  int a = 0, b = 0, c = 0, d = 0, e = 0, f = 0;
-};
+// A node and the numbers of its parents among the sources.
+using LineNode = NodeOf<int>;
 
 // Half-way between two places, given by number.
 struct FineHalf {

@@ -169,22 +169,17 @@ bool RealisedColumns::is_whole(int major, int minor) const {
 }
 
 Lanes RealisedColumns::heights(int major, int minor, std::uint32_t first) const {
-  const int m = major / 2, n = minor / 2, m1 = (major + 1) / 2, n1 = (minor + 1) / 2;
   const auto drawn = [&](const SampleDraw& sample) {
     Lanes lanes;
     draw(sample, first, lanes);
     return lanes;
   };
-  const Lanes a = drawn(sample(m, n));
-  if (m == m1 && n == n1) return a;
-  const NodeDraw law = node(major, minor);
-  const bool is_centre = law.kind == NodeDraw::Kind::kCentre;
-  const Lanes b = drawn(is_centre ? sample(m, n1) : sample(m1, n1)), c = drawn(sample(m1, n)),
-              d = drawn(sample(m1, n1));
-  const int i = is_centre || m != m1 ? 0 : 1, j = is_centre ? 0 : 1 - i;
-  const Lanes e = drawn(centre(major - i, minor - j)), f = drawn(centre(major + i, minor + j));
+  const auto of = node_of(
+      major, minor, [&](int m, int n) { return drawn(sample(m, n)); },
+      [&](int m, int n) { return drawn(centre(m, n)); });
+  if (of.is_sample) return of.a;
   Lanes out;
-  draw(law, first, {a, b, c, d, e, f}, out);
+  draw(of.draw, first, {of.a, of.b, of.c, of.d, of.e, of.f}, out);
   return out;
 }
 

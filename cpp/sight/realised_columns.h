@@ -78,6 +78,14 @@ struct NodeDraw {
   float rise, share;
 };
 
+// A node and what it is drawn from, in the order of NodeDraw: heights, or where they are kept.
+template <class Height>
+struct NodeOf {
+  bool is_sample = false;  // a
+  NodeDraw draw{};
+  Height a{}, b{}, c{}, d{}, e{}, f{};
+};
+
 // Lines of nodes are numbered by half cells: 2 n is at sample n. With `transposed` they are rows.
 class RealisedColumns {
  public:
@@ -87,6 +95,9 @@ class RealisedColumns {
   // What is drawn of the centre of a square; beyond the rim too, so that sides there have two beside them.
   SampleDraw centre(int major, int minor) const;
   NodeDraw node(int major, int minor) const;
+  // With its parents: sample(major, minor) by samples, centre(major, minor) by half cells; only those needed.
+  template <class Sample, class Centre>
+  auto node_of(int major, int minor, const Sample& sample, const Centre& centre) const;
   // Of one node or sample, in sixteen realisations.
   Lanes heights(int major, int minor, std::uint32_t first_realisation) const;
   // Of the line `major`, nodes `from` to `to` (both included).
@@ -119,6 +130,29 @@ class RealisedColumns {
                                 // depends on the amplitude
   double row_edge_ = 0, col_edge_ = 0, centre_ = 0;  // spreads of a learnt surface over amplitude
 };
+
+template <class Sample, class Centre>
+auto RealisedColumns::node_of(int major, int minor, const Sample& sample, const Centre& centre) const {
+  const int m = major / 2, n = minor / 2, m1 = (major + 1) / 2, n1 = (minor + 1) / 2;
+  NodeOf<decltype(sample(m, n))> of;
+  of.a = sample(m, n);
+  of.is_sample = m == m1 && n == n1;
+  if (of.is_sample) return of;
+  of.draw = node(major, minor);
+  if (of.draw.kind == NodeDraw::Kind::kCentre) {
+    of.b = sample(m, n1);
+    of.c = sample(m1, n);
+    of.d = sample(m1, n1);
+    of.e = centre(major, minor);
+  } else {
+    of.b = sample(m1, n1);
+    if (of.draw.kind == NodeDraw::Kind::kBetween) return of;
+    const int i = m == m1 ? 1 : 0, j = 1 - i;  // to the centres on either side
+    of.e = centre(major - i, minor - j);
+    of.f = centre(major + i, minor + j);
+  }
+  return of;
+}
 
 // `middle`(l) + what is drawn for each lane.
 SIGHTBOUND_INLINE void draw_about(const Departure& own, std::uint32_t first, const auto& middle, Lanes& out) {
@@ -164,7 +198,7 @@ SIGHTBOUND_INLINE void draw_between(const Departure& own, std::uint32_t first, c
       own, first, [&](int l) { return 0.5f * (a.v[l] + b.v[l]); }, out);
 }
 
-// What a node is drawn from, in the order of NodeDraw; those that its kind does not need are not looked at.
+// The node itself; parents that its kind does not need are not looked at.
 struct NodeParents {
   const Lanes &a, &b, &c, &d, &e, &f;
 };

@@ -123,20 +123,11 @@ class Writer {
 
   SightPlan::Slot node(int line, int half_cells) {
     const int major = fan_.grid_major(fan_.major(line)), minor = fan_.grid_minor(half_cells);
-    const int m = major / 2, n = minor / 2, m1 = (major + 1) / 2, n1 = (minor + 1) / 2;
-    SightPlan::Node made{columns_.node(major, minor), sample(m, n), 0, 0, 0, 0, 0, 0};
-    if (m == m1 && n == n1) return made.a;
-    made.b = sample(m1, n1);
-    if (made.draw.kind == NodeDraw::Kind::kCentre) {
-      made.b = sample(m, n1);
-      made.c = sample(m1, n);
-      made.d = sample(m1, n1);
-      made.e = centre(major, minor);
-    } else if (made.draw.kind == NodeDraw::Kind::kSide) {
-      const int i = m == m1 ? 1 : 0, j = 1 - i;  // to the centres on either side
-      made.e = centre(major - i, minor - j);
-      made.f = centre(major + i, minor + j);
-    }
+    SightPlan::Node made{columns_.node_of(
+                             major, minor, [&](int m, int n) { return sample(m, n); },
+                             [&](int m, int n) { return centre(m, n); }),
+                         0};
+    if (made.is_sample) return made.a;
     made.slot = (4 + 2 * (unsigned(major) % 2)) * stride_ + unsigned(minor) % (2 * stride_);
     if (takes(made.slot, {major, minor})) plan_.nodes.push_back(made);
     return made.slot;

@@ -17,9 +17,7 @@ struct SightPlan {
     SampleDraw draw;
     Slot slot;
   };
-  struct Node {
-    NodeDraw draw;
-    Slot a, b, c, d, e, f;  // its parents, in the order of NodeParents
+  struct Node : NodeOf<Slot> {
     Slot slot;
   };
   // Of a ray: ground between two nodes, a share `part` of the way from a to b.
