@@ -34,8 +34,8 @@ class WholeLine(
     standard_error: of that, one standard deviation.
     interval: (low, high), of 95 % for the probability (Wilson 1927).
     verdict: 0 hidden, 1 uncertain, 2 visible; a claim needs the nearer end of the interval to hold.
-    blocked_bound: the probability of being blocked is no larger, however many terrains were drawn; nan where the error's tails are
-        not normal.
+    blocked_bound: the probability of being blocked is no larger, however many terrains were drawn; nan where what is drawn is no
+        sum of independent normal numbers: other tails, errors that are correlated, steps that count.
     blocked_at: (x, y) of the place where most realisations block the line; nan where none does.
     blocked_distance: of it from the observer, metres.
     blocked_share: of the realisations that block the line there.

@@ -288,8 +288,10 @@ ErrorModel with_estimate(ErrorModel model, const Estimate& estimate) {
     if (!model.local_scale) model.local_scale = estimate.local_scale;
     if (!model.ridge_gain) model.ridge_gain = estimate.ridge_gain;
     if (!model.tails) model.tails = estimate.tails;
-    if (!model.level_variance) model.level_variance = estimate.steps.level;
-    if (!model.step_variance) model.step_variance = estimate.steps.step;
+    if (!estimate.steps.is_even()) {
+      if (!model.level_variance) model.level_variance = estimate.steps.level;
+      if (!model.step_variance) model.step_variance = estimate.steps.step;
+    }
   }
   return model;
 }

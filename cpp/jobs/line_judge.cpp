@@ -133,7 +133,7 @@ LineJudge::LineJudge(const DemSource& source, const LoadedTerrain& terrain, cons
       rows_(open_, true) {}
 
 std::size_t LineJudge::memory(const Window& window, const LineExtras& extras) {
-  return extras.whole_line ? 5 * sizeof(float) * window.cells() : 0;  // the posterior
+  return extras.whole_line ? 6 * sizeof(float) * window.cells() : 0;  // the posterior
 }
 
 double LineJudge::at(const Grid<float>& values, const GridPlace& place) const {

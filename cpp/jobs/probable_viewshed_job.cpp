@@ -82,7 +82,7 @@ Plan plan_memory(const std::vector<Post>& posts, const DemSource& source, const 
                               source.window());
   plan.terrain = with_room(plan.terrain, source);
   // Of a cell: the posterior's values, who asks, the layers and the place of a cell in doubt; results.
-  const std::size_t of_terrain = 5 * sizeof(float) + 1 + 2 * sizeof(Layers) + sizeof(std::uint32_t);
+  const std::size_t of_terrain = 6 * sizeof(float) + 1 + 2 * sizeof(Layers) + sizeof(std::uint32_t);
   const std::size_t of_canvas = (2 + heights) * sizeof(float) + sizeof(std::uint16_t) + 1;
   plan.bytes = LoadedTerrain::memory(plan.terrain, model, options).peak + plan.terrain.cells() * of_terrain +
                plan.canvas.cells() * of_canvas;
@@ -151,6 +151,9 @@ Grid<std::uint8_t> asked_of(const std::vector<Post>& posts, const LoadedTerrain&
 // samples is not drawn then, nor what means leave open at their own places, which is no measurement's error.
 ErrorModel of_measurement(ErrorModel model) {
   model.geologic_variation = 0.0;
+  model.geologic_shape = GeologicShape::kGaussian;
+  model.growth_exponent.reset();
+  model.geologic_range.reset();
   model.terrain_types.reset();
   return model;
 }
@@ -265,8 +268,8 @@ void place_eyes(const std::vector<Post>& posts, const LoadedTerrain& terrain, Pr
 }
 
 void warn_of_one_terrain(const OpenTerrain& open, const ProbableOptions& options, ProbableReport& report) {
-  if (options.method != Terrains::kPerturb || !open.spread.is_constant() || open.spread.constant() > 0)
-    return;
+  const SampleField& measured = open.shared ? *open.shared : open.spread;
+  if (options.method != Terrains::kPerturb || !measured.is_constant() || measured.constant() > 0) return;
   report.warnings.push_back(
       "The error model holds no measurement error, so there is nothing to add: all perturbed terrains are "
       "the DEM. "

@@ -55,6 +55,9 @@ bool BoundedMarch::look_at(int line, const std::vector<int>& last_lines) {
     }
   }
   if (to < from) return !last_lines.empty();
+  // Rows between two lines are one node off at most, where geodesics bow.
+  from = fan_.node_inside(from - 1);
+  to = fan_.node_inside(to + 1);
   widest_ = std::max(widest_, to - from + 1);
   std::swap(nodes_, nodes_before_);
   nodes_.first = from;
@@ -133,18 +136,23 @@ void BoundedMarch::cross(int ray, int line) {
     fine_.between(horizon.place, place, per_2r, fineness, places);
     rise.high = larger(fine_.highest(places, fineness, horizon.ground, ground, eye_), rise.high);
   }
-  if (const auto row = horizon.line < 0 ? std::nullopt : row_between(horizon.place, place)) {
+  const bool is_unknown = std::isnan(rise.high);
+  if (const auto row = horizon.line == line - 1 ? row_between(horizon.place, place) : std::nullopt;
+      row && line > 0) {
     const HeightRange there =
         ground_at(row->place, row->part, nodes_before_.at(row->node), nodes_.at(row->node));
     const HeightRange over = slope_range(there, eye_, ray_slope(row->place.s, per_2r));
-    rise = {larger(over.low, rise.low), larger(over.high, rise.high)};
+    if (is_unknown) {
+      rise = over;
+    } else if (!std::isnan(over.high)) {
+      rise = {larger(over.low, rise.low), larger(over.high, rise.high)};
+    }
   }
   horizon.place = place;
   horizon.ground = ground;
   horizon.line = line;
-  if (std::isnan(rise.high)) {
-    horizon.behind_unknown = true;
-  } else if (rise.high > horizon.low) {
+  horizon.behind_unknown |= is_unknown;
+  if (rise.high > horizon.low) {  // not of what is unknown (NaN)
     peaks_[at(ray)].push_back({line, rise.high});
     horizon.low = std::max(horizon.low, rise.low);
     horizon.high = std::max(horizon.high, rise.high);

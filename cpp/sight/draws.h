@@ -118,8 +118,8 @@ inline float largest_draw(Tails tails) {
   return tails == Tails::kNormal ? kLargestDraw : kLargestOfHeavyTails;
 }
 
-// Heavier tails are normal draws whose scale is drawn too (Andrews and Mallows 1974): of standard deviation 1,
-// its square exponential for Laplace, 3 / chi^2 of five degrees of freedom for Student's t.
+// Heavier tails are normal draws whose scale is drawn too (Andrews and Mallows 1974): of standard deviation
+// 1, its square exponential for Laplace, 3 / chi^2 of five degrees of freedom for Student's t.
 SIGHTBOUND_INLINE float laplace_scale_from(std::uint32_t bits) {
   const float x = (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1p-23f;  // in (0, 1)
   return std::sqrt(minus_log(x));

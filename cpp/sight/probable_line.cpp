@@ -43,7 +43,8 @@ void draw_ground(const LineInDoubt& line, std::uint32_t first, Realised& drawn) 
   const std::vector<NodePlace>& places = line.over.places;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto node = [&](std::size_t n) -> const Lanes& { return drawn.nodes[at(places[i].index[n])]; };
-    if (places[i].nodes == 2) {
+    const bool is_end = i == 0 || i + 1 == places.size();  // whose departure knows the steps around
+    if (places[i].nodes == 2 && !is_end) {
       draw_on_way(line.across[i], line.steps, first, node(0), node(1), places[i].weight[1], drawn.ground[i]);
       continue;
     }

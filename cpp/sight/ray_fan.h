@@ -6,6 +6,7 @@
 // Places are in samples from the eye's base sample: whatever window is in memory, they are the same.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -36,7 +37,7 @@ struct RayBlock {
 std::vector<RayBlock> ray_blocks(const ProbableEye&);
 
 // Between two lines a ray may cross a row of nodes, those of that number: a share `part` of the way from the
-// first line's node to the second's.
+// first line's node to the second's. Of two (a bowed geodesic near a diagonal) the higher-numbered.
 struct RowCrossing {
   RayPlace place;
   int node;  // half cells
@@ -65,6 +66,7 @@ class RayFan {
   RayPlace crossing(int ray, int line, double minor) const {
     return {0.5 * major(line), minor, distance(ray, line)};
   }
+  int node_inside(int node) const { return std::clamp(node, 2 * first_minor_, 2 * last_minor_); }
   // The nodes on either side of a crossing: half cells.
   int node_before(double minor) const { return static_cast<int>(std::floor(2 * minor)); }
   int node_behind(double minor) const { return std::min(node_before(minor) + 1, 2 * last_minor_); }

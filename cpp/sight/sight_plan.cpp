@@ -70,9 +70,9 @@ class Writer {
     const int before = fan_.node_before(minor);
     const RayPlace place = fan_.crossing(i, line, minor);
     const auto ray = static_cast<std::uint32_t>(i);
-    if (line > 0) {
-      const RayPlace from = fan_.crossing(i, line - 1, fan_.minor(i, line - 1));
-      if (const auto row = row_between(from, place))
+    const double minor_before = line > 0 ? fan_.minor(i, line - 1) : 0;
+    if (line > 0 && fan_.is_inside(minor_before)) {
+      if (const auto row = row_between(fan_.crossing(i, line - 1, minor_before), place))
         plan_.rows.push_back(
             between_nodes(row->place, row->part, node(line - 1, row->node), node(line, row->node), ray));
     }

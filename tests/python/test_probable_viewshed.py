@@ -200,12 +200,8 @@ def test_correlated_errors_are_drawn_as_such(length, sigma):
     np.testing.assert_allclose(found, expected, atol=0.06 if length else 0.03)
 
 
-def test_steps_and_levels_of_a_told_model_count(dem):
-    """Level ground that hides nothing shows more; JSON keeps both."""
-    model = sb.estimate_error(dem)
-    level = sb.ErrorModel.from_json(model.to_json().replace(f'"level_variance": {model.level_variance}', '"level_variance": 0.1'))
-    assert level.level_variance == pytest.approx(0.1)
-    assert sb.ErrorModel.from_json(level.to_json()).level_variance == level.level_variance
+def test_steps_and_levels_of_a_told_model_count():
+    """Level ground that hides nothing shows more."""
     flat = sb.Dem(np.zeros((60, 60), np.float32) + np.random.default_rng(2).normal(0, 0.2, (60, 60)).astype(np.float32),
                   (500000, CELL, 0, 5000000, 0, -CELL), crs())
     p = [
@@ -215,6 +211,37 @@ def test_steps_and_levels_of_a_told_model_count(dem):
         for v in (0.1, 1.0)
     ]
     assert p[0] > p[1] + 0.02
+
+
+@pytest.mark.parametrize("holes", [0.0, 0.1, 0.25])
+def test_a_cell_does_not_depend_on_which_others_are_asked(holes):
+    """To the last bit, holes or not: with a least distance, what lies nearer is only ground."""
+    side = 48
+    row, col = np.mgrid[:side, :side]
+    model = sb.ErrorModel(vertical_rmse=0.3, geologic_variation=1.0)
+    for seed in range(3):
+        random = np.random.default_rng(seed)
+        heights = 0.004 * ((row - 23) ** 2 + (col - 24) ** 2) + random.normal(size=(side, side)) * 0.4
+        unknown = random.random((side, side)) < holes
+        unknown[20:28, 20:28] = False
+        heights[unknown] = np.nan
+        bowl = dem_of(heights.astype(np.float32))
+        look = dict(error_model=model, realisations=64, precision=0, max_distance=22 * CELL)
+        whole = sb.probable_viewshed(bowl, place(23, 24), 1.7, 0.5, **look).probability
+        for least in (4 * CELL, 12 * CELL, 16 * CELL):
+            found = sb.probable_viewshed(bowl, place(23, 24), 1.7, 0.5, min_distance=least, **look).probability
+            asked = np.isfinite(found)
+            assert asked.sum() > 100 and np.array_equal(found[asked], whole[asked])
+
+
+def test_perturbing_takes_any_model(dem):
+    """What it does not draw may be said in any way; correlated errors are errors."""
+    learnt = sb.ErrorModel.from_json('{"vertical_rmse": 0.5, "geologic_variation": {"from_dem": {"exponent": 1.0, "typical_m": 0.5}}}')
+    alike = sb.ErrorModel(0.5, geologic_variation=0, correlation_length=5 * CELL)
+    for model in (learnt, alike):
+        found = sb.probable_viewshed(dem, place(30, 30), 5, method="perturb", error_model=model, realisations=64)
+        assert ((found.probability > 0) & (found.probability < 1)).any()
+        assert not any("no measurement error" in warning for warning in found.report["warnings"])
 
 
 def test_of_means_only_the_measurement_error_is_added(dem):

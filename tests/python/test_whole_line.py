@@ -248,3 +248,17 @@ def test_fresnel_probability_is_that_of_a_lower_line():
 def test_wrong_arguments_are_named(arguments, message):
     with pytest.raises(ValueError, match=message):
         sb.line_of_sight(sb.Dem(rough(391), GT), at(5, 5), at(20, 20), error_model=EXACT, **arguments)
+
+
+@pytest.mark.parametrize("ends", [((3, 5), (12, 22)), ((3, 5.25), (12, 22.25)), ((3.2, 5.1), (12.2, 22.1))], ids=["samples", "sides", "inside"])
+def test_four_times_the_variance_is_twice_the_error(ends):
+    """Levels and steps count once at each stage, wherever the ends lie."""
+    heads = 1.25
+    dem = sb.Dem(rough(3, 4.0), GT)
+    learnt = '{"vertical_rmse": 0, "geologic_model": "growth", "geologic_variation": {"from_dem": {"exponent": 1.0, "typical_m": 0.5, "scale": %g}}%s}'
+    twice, quadruple = learnt % (2, ""), learnt % (1, ', "level_variance": 4, "step_variance": 4')
+    found = [
+        lines(dem, [ends], observer_height=heads, target_height=heads, error_model=sb.ErrorModel.from_json(model), realisations=4096)[0].whole_line.probability
+        for model in (twice, quadruple)
+    ]
+    assert 0.02 < found[0] < 0.98 and found[0] == found[1]
