@@ -83,7 +83,8 @@ def views(coarse_dem, fine_dem, coarse, place, model, options):
                                          seed=options.seed, **look).probability
     seconds = time.perf_counter() - began
     truth = sb.viewshed(fine_dem, place, error_model=EXACT, **look).confidence[np.ix_(coarse.rows, coarse.cols)]
-    asked = np.isfinite(truth)
+    # Behind ground that is unknown in the truth itself its confidence is 0.5: nothing is known to compare with.
+    asked = np.abs(truth - 0.5) > 1e-3
     for values in p.values():
         asked &= np.isfinite(values)
     return {name: values[asked] for name, values in p.items()}, truth[asked] > 0.5, seconds
