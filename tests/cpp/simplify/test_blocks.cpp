@@ -169,8 +169,9 @@ TEST(Blocks, AreRefusedWhenWhatIsLeftIsTooMuch) {
       says(complaint<OverBudget>([&] { simplified(terrain_of(heights), options); }), "left of the first"));
 }
 
+// Large enough to be told of at all: progress is told ten times a second.
 TEST(Blocks, ProgressMovesOnTheWayToATarget) {
-  const Grid<float> heights = grid_from(300, 300, [](int r, int c) { return hills(r, c, 0.8, 28); });
+  const Grid<float> heights = grid_from(800, 800, [](int r, int c) { return hills(r, c, 0.8, 28); });
   SimplifyOptions options = in_blocks(50, 64);
   options.target_faces = 2000;
   std::vector<double> heard;
