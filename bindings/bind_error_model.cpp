@@ -94,6 +94,8 @@ void bind_model(py::module_& m) {
       .def_readwrite("ridge_gain", &ErrorModel::ridge_gain)
       .def_readwrite("level_variance", &ErrorModel::level_variance)
       .def_readwrite("step_variance", &ErrorModel::step_variance)
+      .def_readwrite("level_tail", &ErrorModel::level_tail)
+      .def_readwrite("step_tail", &ErrorModel::step_tail)
       .def("set_vertical_rmse", &set_array<&ErrorModel::vertical_rmse>, py::arg("values").noconvert(),
            py::arg("flipped"))
       .def("set_geologic_variation", &set_array<&ErrorModel::geologic_variation>,
@@ -174,8 +176,10 @@ void bind_estimate(py::module_& m) {
       .def_readonly("ridge_gain", &Estimate::ridge_gain)
       .def_property_readonly("tails", [](const Estimate& e) { return name_of(e.tails); })
       .def_readonly("local_scale", &Estimate::local_scale)
-      .def_property_readonly("level_variance", [](const Estimate& e) { return e.steps.level; })
-      .def_property_readonly("step_variance", [](const Estimate& e) { return e.steps.step; })
+      .def_property_readonly("level_variance", [](const Estimate& e) { return e.steps.level.variance; })
+      .def_property_readonly("step_variance", [](const Estimate& e) { return e.steps.step.variance; })
+      .def_property_readonly("level_tail", [](const Estimate& e) { return e.steps.level.tail; })
+      .def_property_readonly("step_tail", [](const Estimate& e) { return e.steps.step.tail; })
       .def_readonly("self_check", &Estimate::self_check)
       .def_readonly("warnings", &Estimate::warnings);
   m.def(

@@ -106,6 +106,8 @@ def estimate_error(
         "local_scale": found.local_scale,
         "level_variance": found.level_variance,
         "step_variance": found.step_variance,
+        "level_tail": found.level_tail,
+        "step_tail": found.step_tail,
         "self_check": {name: getattr(found.self_check, name) for name in _QUANTILES},
         "warnings": list(found.warnings),
     }

@@ -48,6 +48,10 @@ class ErrorModel:
         level_variance: factor of the variance learnt from the DEM where the samples around stand level (0 to 10). None: 1,
             unless estimated.
         step_variance: the same where they step.
+        level_tail: how unevenly what is drawn is spread where they stand level: the power of an exponential variable that
+            its scale is (0: normal; 0.5: Laplace's distribution; 1.5 at most: most roofs are bare, a few have a chimney).
+            Needs a geologic_variation that is estimated. None: as `tails`, unless estimated.
+        step_tail: the same where they step.
 
     Raises:
         ValueError: a value out of range, or values that contradict each other.
@@ -79,6 +83,8 @@ class ErrorModel:
         ridge_gain: float | None = None,
         level_variance: float | None = None,
         step_variance: float | None = None,
+        level_tail: float | None = None,
+        step_tail: float | None = None,
     ) -> None:
         model = core.ErrorModel()
         self._core, self._arrays, self._report = model, {}, {}
@@ -102,6 +108,10 @@ class ErrorModel:
             model.level_variance = arguments.number("level_variance", level_variance)
         if step_variance is not None:
             model.step_variance = arguments.number("step_variance", step_variance)
+        if level_tail is not None:
+            model.level_tail = arguments.number("level_tail", level_tail)
+        if step_tail is not None:
+            model.step_tail = arguments.number("step_tail", step_tail)
         if terrain_types is not None:
             types = arguments.path("terrain_types", terrain_types)
             table = quantities.class_table(terrain_table)
@@ -250,6 +260,16 @@ class ErrorModel:
     def step_variance(self) -> float | None:
         """Factor of the variance learnt from the DEM where the samples around step."""
         return self._core.step_variance
+
+    @property
+    def level_tail(self) -> float | None:
+        """How unevenly what is drawn is spread where the samples around stand level: 0 normal, 0.5 Laplace's; None: as `tails`."""
+        return self._core.level_tail
+
+    @property
+    def step_tail(self) -> float | None:
+        """How unevenly what is drawn is spread where the samples around step."""
+        return self._core.step_tail
 
     @property
     def report(self) -> dict[str, Any]:

@@ -15,7 +15,7 @@
 #include "error_model/correlated_noise.h"
 #include "error_model/error_model.h"
 #include "error_model/fractal_surface.h"
-#include "error_model/step_variance.h"
+#include "error_model/step_law.h"
 #include "terrain/grid.h"
 
 namespace sightbound {
@@ -64,7 +64,7 @@ struct ErrorField {
   // the unit. Of DEMs of means the sampling error holds what a mean leaves open at its own place.
   std::optional<FractalSurface> surface;
   double ridge_gain = 0;  // of the edges of `surface`
-  StepVariance steps;     // of what `surface` does between samples
+  StepLaw steps;          // of what `surface` does between samples
 
   // The unit of `surface`, metres.
   double plain_per_amplitude() const { return surface ? 1 / (1 - surface->node) : 1; }

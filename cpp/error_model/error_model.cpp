@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "error_model/step_law.h"
 
 namespace sightbound {
 
@@ -145,6 +146,8 @@ void ErrorModel::validate() const {
   require_between("shared_bias", shared_bias, -kLargestError, kLargestError, " m");
   if (level_variance) require_between("level_variance", *level_variance, 0, kLargestVariance, "");
   if (step_variance) require_between("step_variance", *step_variance, 0, kLargestVariance, "");
+  if (level_tail) require_between("level_tail", *level_tail, 0, StepLaw::kLargestTail, "");
+  if (step_tail) require_between("step_tail", *step_tail, 0, StepLaw::kLargestTail, "");
   if (ridge_gain) require_between("ridge_gain", *ridge_gain, -kLargestRidgeGain, kLargestRidgeGain, "");
 }
 

@@ -74,7 +74,10 @@ struct ErrorModel {
   double shared_bias = 0;         // metres, DEM minus truth, the same everywhere; moves absolute heights only
   std::optional<CellContent> samples_or_means;  // unset = samples
   std::optional<double> ridge_gain;  // how far the truth stands above the surface, in units of its curvature
-  std::optional<double> level_variance, step_variance;  // of the local map (step_variance.h); unset = 1
+  // Where the ground stands level, and where it steps (step_law.h): of the local map; unset = 1 ...
+  std::optional<double> level_variance, step_variance;
+  // ... and of what is drawn; unset = as `tails`.
+  std::optional<double> level_tail, step_tail;
 
   // F and z of every claim.
   Tails tails_used() const { return tails.value_or(Tails::kNormal); }

@@ -140,6 +140,8 @@ void read_nature(const Json& json, ErrorModel& model) {
   model.ridge_gain = optional_number(json, "ridge_gain");
   model.level_variance = optional_number(json, "level_variance");
   model.step_variance = optional_number(json, "step_variance");
+  model.level_tail = optional_number(json, "level_tail");
+  model.step_tail = optional_number(json, "step_tail");
 }
 
 void write_nature(const ErrorModel& model, Json& json) {
@@ -150,13 +152,16 @@ void write_nature(const ErrorModel& model, Json& json) {
   if (model.ridge_gain) json["ridge_gain"] = *model.ridge_gain;
   if (model.level_variance) json["level_variance"] = *model.level_variance;
   if (model.step_variance) json["step_variance"] = *model.step_variance;
+  if (model.level_tail) json["level_tail"] = *model.level_tail;
+  if (model.step_tail) json["step_tail"] = *model.step_tail;
 }
 
 ErrorModel model_from(const Json& json) {
-  require_known(json, "The model",
-                {kFormat, "vertical_rmse", "horizontal_rmse", "geologic_variation", "geologic_model",
-                 "geologic_range", "growth_exponent", "terrain_types", "tails", "correlation_length",
-                 "shared_bias", "samples_or_means", "ridge_gain", "level_variance", "step_variance"});
+  require_known(
+      json, "The model",
+      {kFormat, "vertical_rmse", "horizontal_rmse", "geologic_variation", "geologic_model", "geologic_range",
+       "growth_exponent", "terrain_types", "tails", "correlation_length", "shared_bias", "samples_or_means",
+       "ridge_gain", "level_variance", "step_variance", "level_tail", "step_tail"});
   if (json.contains(kFormat) && json[kFormat] != kFormatVersion) {
     refuse(std::string(kFormat) + " is " + json[kFormat].dump() + "; this version of Sightbound reads " +
            std::to_string(kFormatVersion) + ".");

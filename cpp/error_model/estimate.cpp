@@ -29,9 +29,9 @@ constexpr std::size_t kFewest = 64;    // places that H may be measured on
 constexpr double kUsualExponent = 1;   // bare earth: median 1.0-1.1 of sixteen lidar terrains
 constexpr double kLeastExponent = 0.1, kLargestExponent = 2;
 // Of the score. What is taken for means by mistake comes out too cautious, not too bold.
-constexpr double kMeansFrom = 0.6;
+constexpr double kMeansFrom = 0.65;
 constexpr double kLeastOfMeans =
-    0.25;                         // H; if means had to be rougher, it is H that changes with the spacing
+    0.12;                         // H; if means had to be rougher, it is H that changes with the spacing
 constexpr float kHighest = 1e5f;  // metres; no height on Earth, but a spike or an undeclared nodata value
 
 struct Residuals {
@@ -161,10 +161,12 @@ class Blocks {
   std::size_t spread_ = 0;
 };
 
+constexpr double kRoundingShare = 1.5;
+
 // Rounded heights add the same to the residuals of every spacing and hide the growth of what is left. A
 // residual holds the sample's own rounding and half of the sum of two others'.
 double exponent_of(const std::vector<Tile>& tiles, double rounding_m, double float_noise) {
-  constexpr double kRoundingShare = 1.5, kLeastLeft = 0.1;
+  constexpr double kLeastLeft = 0.1;
   const double rounding = kRoundingShare * rounding_m * rounding_m;
   double sum = 0, places = 0;
   for (const Tile& tile : tiles) {
@@ -227,6 +229,15 @@ void judge_content(const ResidualGrowth& growth, std::optional<CellContent> aske
   if (!asked && rough_enough && out.content_score >= kMeansFrom) out.content = CellContent::kMeans;
 }
 
+// What lies between the samples is of shorter spacings than those measured.
+void continue_growth(const ResidualGrowth& growth, Estimate& out) {
+  if (growth.places() < kEnough || out.edge_ms <= 0) return;
+  constexpr double kHidden = 0.05;  // share of rounding in the residuals that hides how exponents change
+  if (kRoundingShare * out.rounding_m * out.rounding_m > kHidden * out.edge_ms) return;
+  out.growth_exponent =
+      std::clamp(growth.continued(out.growth_exponent, 0, out.content), kLeastExponent, kLargestExponent);
+}
+
 void check_itself(const std::vector<Grid<float>>& blocks, double second_exponent, Estimate& out,
                   Progress& progress) {
   if (out.rms_of_spacing[0] <= 0) return;
@@ -273,7 +284,8 @@ Estimate estimate(const DemSource& source, std::optional<CellContent> content, P
   } else {
     judge_few(sums, out);
   }
-  check_itself(kept, growth.exponent(1), out, progress);
+  continue_growth(growth, out);
+  check_itself(kept, growth.continued(growth.exponent(1), 1, CellContent::kSamples), out, progress);
   out.typical_m = out.typical_with(out.growth_exponent);
   return out;
 }
@@ -287,10 +299,14 @@ ErrorModel with_estimate(ErrorModel model, const Estimate& estimate) {
     if (!model.samples_or_means) model.samples_or_means = estimate.content;
     if (!model.local_scale) model.local_scale = estimate.local_scale;
     if (!model.ridge_gain) model.ridge_gain = estimate.ridge_gain;
-    if (!model.tails) model.tails = estimate.tails;
-    if (!estimate.steps.is_even()) {
-      if (!model.level_variance) model.level_variance = estimate.steps.level;
-      if (!model.step_variance) model.step_variance = estimate.steps.step;
+    if (!model.tails) {
+      model.tails = estimate.tails;
+      if (!model.level_tail && !estimate.steps.is_normal()) model.level_tail = estimate.steps.level.tail;
+      if (!model.step_tail && !estimate.steps.is_normal()) model.step_tail = estimate.steps.step.tail;
+    }
+    if (!estimate.steps.has_one_variance()) {
+      if (!model.level_variance) model.level_variance = estimate.steps.level.variance;
+      if (!model.step_variance) model.step_variance = estimate.steps.step.variance;
     }
   }
   return model;

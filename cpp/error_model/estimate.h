@@ -14,7 +14,7 @@
 
 #include "base/progress.h"
 #include "error_model/error_model.h"
-#include "error_model/step_variance.h"
+#include "error_model/step_law.h"
 #include "terrain/dem.h"
 
 namespace sightbound {
@@ -43,7 +43,7 @@ struct Estimate {
   };
   Quantiles self_check;
   Tails tails = Tails::kNormal;  // that the quantiles look most like
-  StepVariance steps;            // the same
+  StepLaw steps;                 // the same
   double local_scale = 1;        // that makes 95 % of the DEM's own samples hold, half the way taken
   std::vector<std::string> warnings;
 

@@ -199,6 +199,17 @@ double apparent_exponent(double exponent, CellContent content, int octave) {
   return std::log2(own_rms(cov, cells, 2 * step) / own_rms(cov, cells, step));
 }
 
+double twist_over_residual(double exponent, CellContent content, int octave) {
+  const Covariance cov(std::clamp(exponent, kLeastExponent, kLargestExponent));
+  const Heights cells(content, 1);
+  const int step = 1 << octave;
+  Heights twist = cells;
+  for (const int i : {0, 1}) {
+    for (const int j : {0, 1}) twist.cell(i * step, j * step, i == j ? 1 : -1);
+  }
+  return std::log2(cov.spread(twist) / own_rms(cov, cells, step));
+}
+
 double exponent_from_apparent(double apparent, CellContent content) {
   double low = kLeastExponent, high = kLargestExponent;
   if (content == CellContent::kSamples) return std::clamp(apparent, low, high);

@@ -40,7 +40,10 @@ FractalSurface fractal_surface(double exponent, CellContent, double aspect = 1);
 // log2 of the ratio of residuals (as above) at twice the spacing and at one spacing, as the cells show it: H
 // for samples, more for means. With `octave` 1, the next such ratio ...
 double apparent_exponent(double exponent, CellContent, int octave = 0);
-// H from that ratio; within 0.1 and 1.9.
+// log2 of the rms of twists z - z(right) - z(below) + z(right and below), `1 << octave` cells apart, over
+// that of the residuals.
+double twist_over_residual(double exponent, CellContent, int octave);
+// H from the ratio of residuals; within 0.1 and 1.9.
 double exponent_from_apparent(double apparent, CellContent);
 
 }  // namespace sightbound

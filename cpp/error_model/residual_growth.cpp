@@ -13,11 +13,17 @@ namespace {
 constexpr int kReach = 8;              // of the widest spacing
 constexpr int kTile = 32;              // samples: growth is measured on each by itself
 constexpr double kOfNextOctave = 0.5;  // share of its change that the first octave is expected to have
+constexpr double kOfTwists = 0.75;     // their share in the score
+constexpr double kMostContinued = 0.2;
 constexpr double kLargestGain = 0.25;
 
 // Doubled residual from samples `offset` away on both sides.
 double residual(const float* z, std::ptrdiff_t offset) {
   return (static_cast<double>(*z) - z[-offset]) + (static_cast<double>(*z) - z[offset]);
+}
+
+double twist(const float* z, std::ptrdiff_t right, std::ptrdiff_t below) {
+  return (static_cast<double>(z[0]) - z[right]) - (static_cast<double>(z[below]) - z[below + right]);
 }
 
 // The change from the first octave to the second, less what the terrain's own change may be.
@@ -54,9 +60,13 @@ void ResidualGrowth::add_tile(const Grid<float>& block, int top, int left, Tile&
           all += e[static_cast<std::size_t>(i)] = residual(z, step << i) / 2;
         const double far = static_cast<double>(z[-3 * step]) + z[3 * step];
         const double guide = 0.5 * ((static_cast<double>(z[-step]) + z[step]) - far);
+        std::array<double, kTwists> twists;
+        for (int i = 0; i < kTwists; ++i)
+          all += twists[static_cast<std::size_t>(i)] = twist(z, std::ptrdiff_t{1} << i, stride << i);
         if (std::isnan(all + guide)) continue;
         ++tile.places;
         for (std::size_t i = 0; i < kSpacings; ++i) tile.squares[i] += e[i] * e[i];
+        for (std::size_t i = 0; i < kTwists; ++i) tile.twists[i] += twists[i] * twists[i];
         guide_squares_ += guide * guide;
         guide_products_ += guide * e[0];
       }
@@ -81,11 +91,33 @@ double ResidualGrowth::exponent(int octave) const {
   return places > 0 ? sum / places : 1;
 }
 
+double ResidualGrowth::continued(double h, int octave, CellContent content) const {
+  const double of_content = apparent_exponent(h, content, octave) - apparent_exponent(h, content, octave + 1);
+  const double change = exponent(octave) - exponent(octave + 1) - of_content;
+  return h + std::clamp(kOfNextOctave * change, -kMostContinued, kMostContinued);
+}
+
+// log2 of twists over residuals, from spacing 2 to 1, tile by tile, averaged.
+double ResidualGrowth::change_of_twists() const {
+  double sum = 0, places = 0;
+  for (const Tile& tile : tiles_) {
+    const double product = tile.twists[0] * tile.squares[1], other = tile.twists[1] * tile.squares[0];
+    if (product <= 0 || other <= 0) continue;  // flat
+    const auto n = static_cast<double>(tile.places);
+    sum += n * 0.5 * std::log2(product / other);
+    places += n;
+  }
+  return places > 0 ? sum / places : 0;
+}
+
 double ResidualGrowth::means_score() const {
   const double h = exponent_from_apparent(exponent(0), CellContent::kMeans);
   const auto of_means = [&](int octave) { return apparent_exponent(h, CellContent::kMeans, octave); };
-  const double expected = change(of_means(0), of_means(1), of_means(2));
-  return change(exponent(0), exponent(1), exponent(2)) / expected;
+  const double by_growth =
+      change(exponent(0), exponent(1), exponent(2)) / change(of_means(0), of_means(1), of_means(2));
+  const double by_twists = change_of_twists() / (twist_over_residual(h, CellContent::kMeans, 0) -
+                                                 twist_over_residual(h, CellContent::kMeans, 1));
+  return kOfTwists * by_twists + (1 - kOfTwists) * std::clamp(by_growth, 0.0, 1.0);
 }
 
 double ResidualGrowth::ridge_gain() const {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "error_model/error_model.h"
 #include "terrain/grid.h"
 
 namespace sightbound {
@@ -14,7 +15,7 @@ namespace sightbound {
 // 16 cells, all at the same places.
 class ResidualGrowth {
  public:
-  static constexpr int kSpacings = 4;
+  static constexpr int kSpacings = 4, kTwists = 2;
 
   void add(const Grid<float>& block);
 
@@ -23,9 +24,15 @@ class ResidualGrowth {
   double rms(int spacing) const;
   // log2 of rms(octave + 1) / rms(octave), tile by tile, averaged.
   double exponent(int octave) const;
-  // 0: the exponents go on as those of samples do, 1: like those of means over the cells (which level out
-  // short spacings, in a way that follows from H: fractal_surface.h). Where H itself changes with the spacing
-  // the next octave tells how much of the change to leave out. Between 0.25 and 0.75 it is not clear.
+  // H below the spacing that exponent(octave) begins with: exponents of real ground grow towards shorter
+  // spacings, and half of the change seen last is taken to go on, 0.2 at most. `exponent`: the terrain's own
+  // there, of `content`, whose own change does not count.
+  double continued(double exponent, int octave, CellContent content) const;
+  // 0: what short spacings show goes on as samples would have it, 1: as means over the cells would, which
+  // level out what is short, in a way that follows from H (fractal_surface.h). Two witnesses: how the
+  // exponent changes (where H itself changes with the spacing the next octave tells how much of that to leave
+  // out), and, with three times the weight, how twists change in units of residuals, which hardly depends on
+  // H. Between 0.4 and 0.8 it is not clear.
   double means_score() const;
 
   // Of the truth above the middle of two samples over what that stands above the middle of the next two, by
@@ -33,11 +40,14 @@ class ResidualGrowth {
   double ridge_gain() const;
 
  private:
+  double change_of_twists() const;
+
   std::size_t places_ = 0;
   std::array<double, kSpacings> squares_{};
   struct Tile {
     std::size_t places;
     std::array<double, kSpacings> squares;
+    std::array<double, kTwists> twists;
   };
   void add_tile(const Grid<float>& block, int top, int left, Tile& tile);
   std::vector<Tile> tiles_;

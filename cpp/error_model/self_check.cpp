@@ -2,6 +2,7 @@
 #include "error_model/self_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -17,7 +18,9 @@ constexpr std::size_t kBins = static_cast<std::size_t>(kLargest / kBin) + 1;
 constexpr std::size_t kSteps = 16;
 constexpr double kOutlier = 5;  // sds: no single error counts for more
 constexpr double kLeastVariance = 0.1, kLargestVariance = 3;
-constexpr double kUsual = 0.75;  // nearer to 1 makes no difference: self-affine ground has 0.85 to 1.05
+constexpr double kUsual = 0.75;      // nearer to 1 makes no difference: self-affine ground has 0.85 to 1.05
+constexpr double kUsualTail = 0.15;  // self-affine ground has 0 to 0.1
+constexpr double kFewest = 100;      // places of a class that quantiles are taken of
 constexpr double kCore = 0.683, kFar = 0.99, kClaimed = 0.95;
 constexpr double kLeastScale = 0.6, kLargestScale = 1.7;
 
@@ -31,38 +34,112 @@ Grid<float> every_other(const Grid<float>& block) {
 
 double middle_of_class(std::size_t step) { return (static_cast<double>(step) + 0.5) / kSteps; }
 
-double variance_of_class(const StepVariance& steps, std::size_t step) {
+double variance_of_class(const StepLaw& steps, std::size_t step) {
   const double h = middle_of_class(step);
-  return steps.level * (1 - h) + steps.step * h;
+  return steps.level.variance * (1 - h) + steps.step.variance * h;
 }
 
-// By least squares over all errors, in units of their mean square.
-StepVariance fitted_steps(const std::vector<std::size_t>& by_step) {
-  double n = 0, sum = 0;
-  double ll = 0, ls = 0, ss = 0, lv = 0, sv = 0;  // normal equations
-  for (std::size_t k = 0; k < kSteps; ++k) {
-    const double h = middle_of_class(k), l = 1 - h;
-    for (std::size_t i = 0; i < kBins; ++i) {
-      const auto count = static_cast<double>(by_step[k * kBins + i]);
-      const double ratio = std::min(kBin * (static_cast<double>(i) + 0.5), kOutlier), square = ratio * ratio;
-      n += count;
-      sum += count * square;
-      ll += count * l * l;
-      ls += count * l * h;
-      ss += count * h * h;
-      lv += count * l * square;
-      sv += count * h * square;
-    }
+// Two numbers, of level ground and of steps, between which another changes linearly from class to class: by
+// least squares.
+class LevelAndStep {
+ public:
+  void add(std::size_t step, double places, double value) {
+    const double h = middle_of_class(step), l = 1 - h;
+    places_ += places;
+    sum_ += places * value;
+    ll_ += places * l * l;
+    ls_ += places * l * h;
+    ss_ += places * h * h;
+    lv_ += places * l * value;
+    sv_ += places * h * value;
   }
-  const double determinant = ll * ss - ls * ls, mean = n > 0 ? sum / n : 0;
-  if (!(determinant > 1e-6 * n * n) || mean <= 0) return {};
+  // Both classes of ground have been seen.
+  bool is_found() const { return determinant() > 1e-6 * places_ * places_; }
+  double mean() const { return places_ > 0 ? sum_ / places_ : 0; }
+  double level() const { return (lv_ * ss_ - sv_ * ls_) / determinant(); }
+  double step() const { return (sv_ * ll_ - lv_ * ls_) / determinant(); }
+
+ private:
+  double determinant() const { return ll_ * ss_ - ls_ * ls_; }
+
+  double places_ = 0, sum_ = 0, ll_ = 0, ls_ = 0, ss_ = 0, lv_ = 0, sv_ = 0;
+};
+
+// Of a class; the places where a share of them ends.
+struct ErrorsOfClass {
+  const std::size_t* histogram;
+
+  double places() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < kBins; ++i) sum += static_cast<double>(histogram[i]);
+    return sum;
+  }
+  double sum_of_squares() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < kBins; ++i) {
+      const double ratio = std::min(kBin * (static_cast<double>(i) + 0.5), kOutlier);
+      sum += static_cast<double>(histogram[i]) * ratio * ratio;
+    }
+    return sum;
+  }
+  double quantile(double share) const {
+    const double wanted = share * places();
+    double below = 0;
+    for (std::size_t i = 0; i < kBins; ++i) {
+      const auto here = static_cast<double>(histogram[i]);
+      if (here > 0 && below + here >= wanted)
+        return kBin * (static_cast<double>(i) + (wanted - below) / here);
+      below += here;
+    }
+    return 0;
+  }
+};
+
+// In units of the errors' mean square.
+void fit_variances(const LevelAndStep& squares, StepLaw& out) {
+  if (!squares.is_found() || squares.mean() <= 0) return;
   const auto within = [&](double variance) {
-    return std::clamp(variance / mean, kLeastVariance, kLargestVariance);
+    return std::clamp(variance / squares.mean(), kLeastVariance, kLargestVariance);
   };
-  const StepVariance found{within((lv * ss - sv * ls) / determinant),
-                           within((sv * ll - lv * ls) / determinant)};
+  const double level = within(squares.level()), step = within(squares.step());
   const auto is_usual = [](double variance) { return variance > kUsual && variance < 1 / kUsual; };
-  return is_usual(found.level) && is_usual(found.step) ? StepVariance{} : found;
+  if (is_usual(level) && is_usual(step)) return;
+  out.level.variance = level;
+  out.step.variance = step;
+}
+
+// The q whose n E^q, n normal and E exponential, has this 95 % quantile over that of 68.3 %: by integration
+// for q = 0, 1/4 ... 3/2, linear between.
+double tail_with(double claimed_over_core) {
+  constexpr std::array kRatios{1.959, 2.172, 2.608, 3.188, 3.926, 4.858, 6.029};
+  static_assert(0.25 * (kRatios.size() - 1) == StepLaw::kLargestTail);
+  std::size_t i = 1;
+  while (i + 1 < kRatios.size() && claimed_over_core > kRatios[i]) ++i;
+  const double part = (claimed_over_core - kRatios[i - 1]) / (kRatios[i] - kRatios[i - 1]);
+  return std::clamp(0.25 * (static_cast<double>(i - 1) + part), 0.0, StepLaw::kLargestTail);
+}
+
+void fit_tails(const LevelAndStep& tails, StepLaw& out) {
+  if (!tails.is_found()) return;
+  const auto within = [](double tail) { return std::clamp(tail, 0.0, StepLaw::kLargestTail); };
+  const double level = within(tails.level()), step = within(tails.step());
+  if (level < kUsualTail && step < kUsualTail) return;
+  out.level.tail = level;
+  out.step.tail = step;
+}
+
+StepLaw fitted_steps(const std::vector<std::size_t>& by_step) {
+  LevelAndStep squares, tails;
+  for (std::size_t k = 0; k < kSteps; ++k) {
+    const ErrorsOfClass errors{&by_step[k * kBins]};
+    const double places = errors.places(), core = errors.quantile(kCore);
+    if (places > 0) squares.add(k, places, errors.sum_of_squares() / places);
+    if (places >= kFewest && core > 0) tails.add(k, places, tail_with(errors.quantile(kClaimed) / core));
+  }
+  StepLaw out;
+  fit_variances(squares, out);
+  fit_tails(tails, out);
+  return out;
 }
 
 double far_over_core(Tails tails) {
@@ -110,16 +187,7 @@ void SelfCheck::finish() {
   }
 }
 
-double SelfCheck::quantile(double share) const {
-  const double wanted = share * static_cast<double>(places_);
-  double below = 0;
-  for (std::size_t i = 0; i < histogram_.size(); ++i) {
-    const auto here = static_cast<double>(histogram_[i]);
-    if (here > 0 && below + here >= wanted) return kBin * (static_cast<double>(i) + (wanted - below) / here);
-    below += here;
-  }
-  return 0;
-}
+double SelfCheck::quantile(double share) const { return ErrorsOfClass{histogram_.data()}.quantile(share); }
 
 Tails SelfCheck::tails() const {
   const double core = quantile(kCore);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "error_model/step_variance.h"
+#include "error_model/step_law.h"
 #include "error_model/tails.h"
 #include "terrain/grid.h"
 
@@ -27,7 +27,7 @@ class SelfCheck {
   double quantile(double share) const;
   // How the variance of the errors depends on the step between the samples that they lie between. What
   // follows takes it as given.
-  StepVariance steps() const { return steps_; }
+  StepLaw steps() const { return steps_; }
   // The distribution whose quantile of 99 % over that of 68.3 % is nearest.
   Tails tails() const;
   // What the predicted sd had to be multiplied by for 95 % to hold, half the way taken (its root: the next
@@ -39,7 +39,7 @@ class SelfCheck {
 
   double exponent_, typical_m_;
   std::size_t places_ = 0;
-  StepVariance steps_;
+  StepLaw steps_;
   std::vector<std::size_t> by_step_;    // of errors over sd, class by class of steps
   std::vector<std::size_t> histogram_;  // of errors over what steps_ leaves of it
 };

@@ -176,7 +176,7 @@ class Behind {
               terrain.scene().error.surface ? &posterior_.rises : nullptr,
               perturbs_alike(terrain) ? &terrain.scene().error.sampling
                                       : (posterior_.has_shared() ? &posterior_.shared : nullptr),
-              largest_draw(terrain.scene().error.tails)} {}
+              largest_draw(terrain.scene().error)} {}
   const OpenTerrain& open() const { return open_; }
 
  private:

@@ -36,7 +36,7 @@ FineGround::FineGround(const OpenTerrain& terrain, bool transposed, int base_row
       transposed_(transposed),
       base_row_(base_row),
       base_col_(base_col),
-      steps_(is_learnt() ? terrain.error.steps : StepVariance{}),
+      steps_(is_learnt(terrain) ? terrain.error.steps : StepLaw{}),
       most_(terrain.largest_draw * static_cast<float>(steps_.largest_factor())),
       half_across_(terrain.error.larger_side_m / 4),
       across_per_amplitude_(crossings ? per_amplitude(half_across_) : 0) {}
@@ -59,7 +59,7 @@ DrawKey FineGround::scale_of(double row, double col) const {
 
 Departure FineGround::across(const RayPlace& place, double part) const {
   return {key_of(row_of(place), col_of(place), kCrossingDraws), scale_of(row_of(place), col_of(place)),
-          spread_across(place, part), terrain_.error.tails};
+          spread_across(place, part), tails(row_of(place), col_of(place))};
 }
 
 Departure FineGround::inside(const RayPlace& place, double along, double across) const {
@@ -67,19 +67,28 @@ Departure FineGround::inside(const RayPlace& place, double along, double across)
                         step_factor(row_of(place), col_of(place));
   const double parts = 4 * along * (1 - along) + 4 * across * (1 - across);
   return {key_of(row_of(place), col_of(place), kInsideDraws), scale_of(row_of(place), col_of(place)),
-          static_cast<float>(middle * std::sqrt(parts)), terrain_.error.tails};
+          static_cast<float>(middle * std::sqrt(parts)), tails(row_of(place), col_of(place))};
 }
 
-// As the samples around step.
-double FineGround::step_factor(double row, double col) const {
+FineGround::Square FineGround::around(double row, double col) const {
   const int rows = terrain_.mean.rows(), cols = terrain_.mean.cols();
   const auto within = [](double x, int base, int count) {
     return std::clamp(base + static_cast<int>(std::floor(x)), 0, count - 1);
   };
   const int r = within(row, base_row_, rows), c = within(col, base_col_, cols);
-  return steps_.is_even()
-             ? 1
-             : factor_between(terrain_, r, c, std::min(r + 1, rows - 1), std::min(c + 1, cols - 1));
+  return {r, c, std::min(r + 1, rows - 1), std::min(c + 1, cols - 1)};
+}
+
+// As the samples around step.
+double FineGround::step_factor(double row, double col) const {
+  if (steps_.has_one_variance()) return 1;
+  const Square at = around(row, col);
+  return factor_between(terrain_, at.row, at.col, at.row1, at.col1);
+}
+
+DrawnTails FineGround::tails(double row, double col) const {
+  const Square at = around(row, col);
+  return tails_between(terrain_, at.row, at.col, at.row1, at.col1);
 }
 
 float FineGround::spread_across(const RayPlace& place, double part) const {
@@ -91,7 +100,7 @@ FinePlace FineGround::middle(const RayPlace& a, const RayPlace& b, double per_2r
   const RayPlace place = half_way(a, b);
   const double row = row_of(place), col = col_of(place), half_m = 0.5 * std::abs(b.s - a.s);
   return {{key_of(row, col, kFineDraws), scale_of(row, col), spread(row, col, half_m, per_amplitude(half_m)),
-           terrain_.error.tails},
+           tails(row, col)},
           ray_slope(place.s, per_2r)};
 }
 
@@ -123,7 +132,7 @@ float FineGround::highest(const FinePlaces& places, Fineness fineness, const Hei
 double FineGround::per_amplitude(double half_m) const {
   const ErrorField& error = terrain_.error;
   const GrowthProfile& profile = error.profile;
-  if (!is_learnt()) {
+  if (!is_learnt(terrain_)) {
     const bool by_amplitude = profile.shape == GeologicShape::kGaussian && profile.range_m == 0;
     return by_amplitude ? NAN : profile(half_m, 0);
   }

@@ -56,7 +56,7 @@ class FineGround {
   Departure inside(const RayPlace&, double along, double across) const;
   float most_across(const RayPlace& place, double part) const { return most_ * spread_across(place, part); }
   // What departs between two places depends on how they step.
-  const StepVariance& steps() const { return steps_; }
+  const StepLaw& steps() const { return steps_; }
 
   // No realisation's slope is higher. `fineness` is not kNone.
   float highest(const FinePlaces&, Fineness, const HeightRange& a, const HeightRange& b,
@@ -69,8 +69,13 @@ class FineGround {
   // Of ground half-way between two places, over the amplitude there; NaN where it depends on that.
   double per_amplitude(double half_m) const;
   float spread_across(const RayPlace&, double part) const;
+  // Four samples.
+  struct Square {
+    int row, col, row1, col1;
+  };
+  Square around(double row, double col) const;
   double step_factor(double row, double col) const;
-  bool is_learnt() const { return terrain_.error.surface && terrain_.rises; }
+  DrawnTails tails(double row, double col) const;
   float spread(double row, double col, double half_m, double per_amplitude) const;
   double row_of(const RayPlace& place) const { return transposed_ ? place.major : place.minor; }
   double col_of(const RayPlace& place) const { return transposed_ ? place.minor : place.major; }
@@ -78,7 +83,7 @@ class FineGround {
   const OpenTerrain& terrain_;
   const bool transposed_;
   const int base_row_, base_col_;
-  const StepVariance steps_;
+  const StepLaw steps_;
   const float most_;          // of a draw, in standard deviations
   const double half_across_;  // metres: half of half a cell
   const double across_per_amplitude_;

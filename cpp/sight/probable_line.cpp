@@ -87,7 +87,7 @@ std::uint32_t below(const DoubtfulPlace& place, const Lanes& ground, const Lanes
 LineInDoubt::LineInDoubt(const Scene& scene, const OpenTerrain& terrain, const RealisedColumns& columns,
                          const Eye& eye, const Target& target, const LineDoubt& doubt)
     : over(terrain.mean, eye, target),
-      normal(scene.error.tails == Tails::kNormal && !terrain.shared),
+      normal(is_normal(terrain.error) && !terrain.shared),
       seed(terrain.seed),
       datum(std::floor(eye.height)),
       eye_ground(doubt.eye_ground - datum),

@@ -56,7 +56,7 @@ struct LineInDoubt {
 
   LineOverNodes over;
   bool normal;  // all that is drawn: independent, and no draw's spread depends on another
-  StepVariance steps;
+  StepLaw steps;
   std::uint64_t seed;
   double datum;
   double eye_ground, target_ground;  // of the DEM at the ends

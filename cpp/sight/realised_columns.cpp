@@ -17,23 +17,37 @@ double half_way(const CellSize& cell, Way way) {
   return way == kAlongColumn ? cell.row_m / 2 : std::hypot(cell.col_m, cell.row_m) / 2;
 }
 
-}  // namespace
-
-namespace {
-
 float mean_amplitude(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
   const SampleField& amplitude = terrain.error.amplitude;
   return 0.25f * ((amplitude.at(r, c) + amplitude.at(r1, c1)) + (amplitude.at(r, c1) + amplitude.at(r1, c)));
 }
 
-}  // namespace
-
-double factor_between(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
-  if (terrain.error.steps.is_even()) return 1;
+// Half the range of the samples around, and the sd of what lies between them, metres.
+struct Around {
+  double half_range, sigma;
+};
+Around around(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
   const Grid<float>& z = terrain.mean;
   const auto [low, high] = std::minmax({z.at(r, c), z.at(r, c1), z.at(r1, c), z.at(r1, c1)});
-  return terrain.error.steps.factor(
-      0.5 * (high - low), mean_amplitude(terrain, r, c, r1, c1) * terrain.error.plain_per_amplitude());
+  return {0.5 * (high - low), mean_amplitude(terrain, r, c, r1, c1) * terrain.error.plain_per_amplitude()};
+}
+
+}  // namespace
+
+bool is_normal(const ErrorField& error) { return error.tails == Tails::kNormal && error.steps.is_normal(); }
+
+double factor_between(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
+  if (terrain.error.steps.has_one_variance()) return 1;
+  const Around at = around(terrain, r, c, r1, c1);
+  return terrain.error.steps.factor(at.half_range, at.sigma);
+}
+
+DrawnTails tails_between(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
+  const StepLaw& steps = terrain.error.steps;
+  if (!is_learnt(terrain) || steps.is_normal()) return drawn_tails(terrain.error.tails);
+  if (steps.has_one_tail()) return {static_cast<float>(steps.level.tail)};
+  const Around at = around(terrain, r, c, r1, c1);
+  return {static_cast<float>(steps.tail(at.half_range, at.sigma))};
 }
 
 float amplitude_between(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
@@ -124,6 +138,12 @@ float RealisedColumns::spread_of_surface(const Place& node) const {
   return static_cast<float>(spread) * amplitude_between(terrain_, r, c, r1, c1);
 }
 
+DrawnTails RealisedColumns::tails(const Place& node) const {
+  const int rows = terrain_.mean.rows(), cols = terrain_.mean.cols();
+  return tails_between(terrain_, std::max(node.row, 0) / 2, std::max(node.col, 0) / 2,
+                       std::min((node.row + 1) / 2, rows - 1), std::min((node.col + 1) / 2, cols - 1));
+}
+
 float RealisedColumns::rise(const Place& node) const {
   const MiddleRises& rises = *terrain_.rises;
   const int r = node.row / 2, c = node.col / 2;
@@ -134,7 +154,7 @@ float RealisedColumns::rise(const Place& node) const {
 SampleDraw RealisedColumns::sample(int major, int minor) const {
   const Place at = place(2 * major, 2 * minor);
   const int row = at.row / 2, col = at.col / 2;
-  SampleDraw draw{{key(at), scale(at), terrain_.spread.at(row, col), terrain_.error.tails},
+  SampleDraw draw{{key(at), scale(at), terrain_.spread.at(row, col), drawn_tails(terrain_.error.tails)},
                   terrain_.mean.at(row, col)};
   if (terrain_.shared) draw.shared = {&terrain_, row, col, terrain_.shared->at(row, col)};
   return draw;
@@ -142,25 +162,21 @@ SampleDraw RealisedColumns::sample(int major, int minor) const {
 
 SampleDraw RealisedColumns::centre(int major, int minor) const {
   const Place at = place(major, minor);
-  return {{key(at), scale(at), spread_of_surface(at), terrain_.error.tails}, 0};
+  return {{key(at), scale(at), spread_of_surface(at), tails(at)}, 0};
 }
 
 NodeDraw RealisedColumns::node(int major, int minor) const {
   const Place at = place(major, minor);
-  if (!is_learnt())
-    return {NodeDraw::Kind::kBetween, {key(at), scale(at), spread_of_model(at), terrain_.error.tails}, 0, 0};
+  if (!is_learnt(terrain_))
+    return {NodeDraw::Kind::kBetween, {key(at), scale(at), spread_of_model(at), tails(at)}, 0, 0};
   if (major % 2 != 0 && minor % 2 != 0) {
     // Beside a hole the triangle that is known goes as far as the diagonal.
     if (!is_whole(major / 2, minor / 2))
-      return {
-          NodeDraw::Kind::kBetween, {key(at), scale(at), spread_of_surface(at), terrain_.error.tails}, 0, 0};
-    return {NodeDraw::Kind::kCentre, {key(at), scale(at), 0, terrain_.error.tails}, rise(at), 0};
+      return {NodeDraw::Kind::kBetween, {key(at), scale(at), spread_of_surface(at), tails(at)}, 0, 0};
+    return {NodeDraw::Kind::kCentre, {key(at), scale(at), 0, tails(at)}, rise(at), 0};
   }
   const auto share = static_cast<float>(terrain_.error.surface->from_centres / 2);
-  return {NodeDraw::Kind::kSide,
-          {key(at), scale(at), spread_of_surface(at), terrain_.error.tails},
-          rise(at),
-          share};
+  return {NodeDraw::Kind::kSide, {key(at), scale(at), spread_of_surface(at), tails(at)}, rise(at), share};
 }
 
 bool RealisedColumns::is_whole(int major, int minor) const {
@@ -195,7 +211,7 @@ HeightRange RealisedColumns::range(int major, int minor) const {
 // What all draws of a node that is no sample come to at most, in standard deviations' sizes.
 float RealisedColumns::most(int major, int minor) const {
   const Place at = place(major, minor);
-  if (!is_learnt()) return spread_of_model(at);
+  if (!is_learnt(terrain_)) return spread_of_model(at);
   if (major % 2 != 0 && minor % 2 != 0) return spread_of_surface(at);
   const int i = major % 2 == 0 ? 1 : 0, j = 1 - i;  // to the centres on either side
   const auto share = static_cast<float>(std::abs(terrain_.error.surface->from_centres) / 2);
@@ -217,7 +233,7 @@ void RealisedColumns::ranges(int major, int from, int to, std::vector<HeightRang
     const HeightRange b = range(next, k1);
     const float room = terrain_.largest_draw * most(major, n);
     here = {0.5f * (a.low + b.low), 0.5f * (a.high + b.high)};
-    if (is_learnt()) {
+    if (is_learnt(terrain_)) {
       if (m != next && k != k1 && is_whole(m, k)) {
         const HeightRange c = range(m, k1), d = range(next, k);
         here = {0.5f * here.low + 0.25f * (c.low + d.low), 0.5f * here.high + 0.25f * (c.high + d.high)};

@@ -23,6 +23,13 @@
 
 namespace sightbound {
 
+// All draws are normal ones.
+bool is_normal(const ErrorField&);
+// No draw is farther from 0, in standard deviations.
+inline float largest_draw(const ErrorField& error) {
+  return is_normal(error) ? kLargestDraw : kLargestOfHeavyTails;
+}
+
 // What realisations are drawn from; all on one grid.
 struct OpenTerrain {
   const Grid<float>& mean;        // metres, NaN = nodata
@@ -39,6 +46,10 @@ struct OpenTerrain {
 // factor for how they step, which the amplitude has in it.
 float amplitude_between(const OpenTerrain&, int row, int col, int row1, int col1);
 double factor_between(const OpenTerrain&, int row, int col, int row1, int col1);
+// What departs there has these tails.
+DrawnTails tails_between(const OpenTerrain&, int row, int col, int row1, int col1);
+// Terrain is drawn as a surface learnt from the DEM.
+inline bool is_learnt(const OpenTerrain& terrain) { return terrain.error.surface && terrain.rises; }
 
 // Of all realisations, metres; NaN where terrain is not known.
 struct HeightRange {
@@ -49,7 +60,7 @@ struct HeightRange {
 struct Departure {
   DrawKey key, scale;
   float spread;
-  Tails tails;
+  DrawnTails tails;
 };
 
 // A number about 0 that other samples near share in part; `terrain` null: none.
@@ -114,10 +125,10 @@ class RealisedColumns {
   Place place(int major, int minor) const { return transposed_ ? Place{major, minor} : Place{minor, major}; }
   DrawKey key(const Place& at) const;
   DrawKey scale(const Place& at) const;
-  bool is_learnt() const { return centre_ != 0; }
   float spread_of_model(const Place&) const;
   float spread_of_surface(const Place&) const;
   float rise(const Place&) const;
+  DrawnTails tails(const Place&) const;
   HeightRange range(int major, int minor) const;
   // Of the square whose first sample that is, the two off the NW-SE diagonal are known.
   bool is_whole(int major, int minor) const;
@@ -162,7 +173,7 @@ SIGHTBOUND_INLINE void draw_about(const Departure& own, std::uint32_t first, con
   }
   Lanes x;
   fill_normal(own.key, first, x);
-  if (own.tails != Tails::kNormal) scale_tails(own.tails, own.scale, first, x);
+  if (!own.tails.are_normal()) scale_tails(own.tails, own.scale, first, x);
   for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l) + own.spread * x.v[l];
 }
 
@@ -177,19 +188,31 @@ SIGHTBOUND_INLINE void draw(const SampleDraw& sample, std::uint32_t first, Lanes
 
 // A share `part` of the way from one drawn height to another: little departs from the line between them where
 // they are level.
-SIGHTBOUND_INLINE void draw_on_way(const Departure& own, const StepVariance& steps, std::uint32_t first,
+SIGHTBOUND_INLINE void draw_on_way(const Departure& own, const StepLaw& steps, std::uint32_t first,
                                    const Lanes& a, const Lanes& b, float part, Lanes& out) {
   const auto middle = [&](int l) { return a.v[l] + part * (b.v[l] - a.v[l]); };
   if (steps.is_even() || own.spread == 0) return draw_about(own, first, middle, out);
-  const auto level = static_cast<float>(steps.level), step = static_cast<float>(steps.step);
-  const float s2 = own.spread * own.spread, share = part * (1 - part);
-  Lanes departure;
-  draw_about(
-      own, first, [](int) { return 0.0f; }, departure);
+  const float s2 = own.spread * own.spread, room = part * (1 - part);
+  Lanes x, step;
   for (int l = 0; l < kLanes; ++l) {
-    const float rise = b.v[l] - a.v[l], g2 = share * rise * rise;
-    out.v[l] = middle(l) + std::sqrt((level * s2 + step * g2) / (s2 + g2)) * departure.v[l];
+    const float rise = b.v[l] - a.v[l], g2 = room * rise * rise;
+    step.v[l] = g2 / (s2 + g2);
   }
+  fill_normal(own.key, first, x);
+  if (!steps.has_one_tail()) {
+    const auto level = static_cast<float>(steps.level.tail),
+               more = static_cast<float>(steps.step.tail) - level;
+    Lanes log_e;
+    fill_log_exponential(own.scale, first, log_e);
+    for (int l = 0; l < kLanes; ++l)
+      x.v[l] = within_largest(x.v[l] * power_scale(log_e.v[l], level + more * step.v[l]));
+  } else if (!own.tails.are_normal()) {
+    scale_tails(own.tails, own.scale, first, x);
+  }
+  const auto level = static_cast<float>(steps.level.variance),
+             more = static_cast<float>(steps.step.variance) - level;
+  for (int l = 0; l < kLanes; ++l)
+    out.v[l] = middle(l) + own.spread * std::sqrt(level + more * step.v[l]) * x.v[l];
 }
 
 SIGHTBOUND_INLINE void draw_between(const Departure& own, std::uint32_t first, const Lanes& a, const Lanes& b,

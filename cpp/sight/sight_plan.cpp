@@ -153,7 +153,7 @@ SIGHTBOUND_INLINE void raise(const Lanes& ground, const Lanes& eye, const RaySlo
 }
 
 // By what lies between two places.
-SIGHTBOUND_INLINE void raise_between(const FinePlace* places, Fineness fineness, const StepVariance& steps,
+SIGHTBOUND_INLINE void raise_between(const FinePlace* places, Fineness fineness, const StepLaw& steps,
                                      std::uint32_t first, const Lanes& a, const Lanes& b, const Lanes& eye,
                                      Lanes& horizon) {
   if (fineness == Fineness::kNone) return;

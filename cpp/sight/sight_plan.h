@@ -53,7 +53,7 @@ struct SightPlan {
   std::vector<Place> rows;  // between the line before and this
   std::vector<Crossing> crossings;
   std::vector<FinePlace> fine;
-  StepVariance steps;  // of what departs between two places
+  StepLaw steps;  // of what departs between two places
   int rays = 0;
   Slot slots = 0;
 };

@@ -47,7 +47,7 @@ def test_nothing_said_and_zero_said():
     sb.ErrorModel(1.0, 0.0, 2.0, 7.5, "step"), sb.ErrorModel(1.0, 0.0, 2.0, geologic_model="growth", growth_exponent=1.2),
     sb.ErrorModel("sigma.tif", 0.0, "delta.tif"),
     sb.ErrorModel(1.0, tails="student", correlation_length=12.5, shared_bias=-0.3, samples_or_means="means", ridge_gain=0.1,
-                  level_variance=0.4, step_variance=2.5),
+                  level_variance=0.4, step_variance=2.5, level_tail=1.2, step_tail=0.1),
     sb.ErrorModel(1.0, 0.0, 0.5, terrain_types="types.gpkg", terrain_field="class", terrain_table={"a": 1.5, "b": 3.0}),
 ], ids=repr)
 def test_json_round_trip(model, tmp_path):
@@ -57,7 +57,7 @@ def test_json_round_trip(model, tmp_path):
     for back in (sb.ErrorModel.from_json(text), sb.ErrorModel.from_json(tmp_path / "model.json")):
         for field in ("vertical_rmse", "horizontal_rmse", "geologic_variation", "geologic_range", "geologic_model", "growth_exponent",
                       "terrain_types", "terrain_field", "terrain_table", "tails", "correlation_length", "shared_bias",
-                      "samples_or_means", "ridge_gain", "level_variance", "step_variance"):
+                      "samples_or_means", "ridge_gain", "level_variance", "step_variance", "level_tail", "step_tail"):
             assert getattr(back, field) == getattr(model, field), field
         assert back.to_json() == text
 
@@ -67,7 +67,7 @@ def test_the_nature_of_errors():
     assert (model.tails, model.correlation_length, model.shared_bias, model.samples_or_means, model.ridge_gain) == (None, 0, 0, None, None)
     assert sb.ErrorModel(samples_or_means="auto").samples_or_means is None
     for wrong in (dict(tails="cauchy"), dict(correlation_length=-1), dict(shared_bias=1e5), dict(samples_or_means="both"), dict(ridge_gain=3),
-                  dict(level_variance=-1), dict(step_variance=11)):
+                  dict(level_variance=-1), dict(step_variance=11), dict(level_tail=1.6), dict(step_tail=-0.1)):
         with pytest.raises(ValueError, match=next(iter(wrong))):
             sb.ErrorModel(**wrong)
 

@@ -213,6 +213,18 @@ def test_steps_and_levels_of_a_told_model_count():
     assert p[0] > p[1] + 0.02
 
 
+def test_level_ground_that_is_mostly_bare_shows_more():
+    """As much variance, in fewer places."""
+    flat = sb.Dem(np.random.default_rng(2).normal(0, 0.2, (60, 60)).astype(np.float32), (500000, CELL, 0, 5000000, 0, -CELL), crs())
+    p = [
+        np.nanmean(sb.probable_viewshed(
+            flat, place(30, 30), error_model=sb.ErrorModel(geologic_model="growth", tails="normal", level_tail=q, step_tail=0), realisations=256
+        ).probability)
+        for q in (1.2, 0.0)
+    ]
+    assert p[0] > p[1] + 0.02
+
+
 @pytest.mark.parametrize("holes", [0.0, 0.1, 0.25])
 def test_a_cell_does_not_depend_on_which_others_are_asked(holes):
     """To the last bit, holes or not: with a least distance, what lies nearer is only ground."""

@@ -4,7 +4,7 @@
     sigma_s = sigma_v + sigma_h tan(slope)
     sigma_g(d) = (Delta / z95) (1 - P(d))
     between samples: see by how much each sample misses the mean of its neighbours, 1 and 2 samples away (s2, s4):
-    H = log2(s4 / s2), sd half a spacing from a sample = s2 2^-H
+    H = log2(s4 / s2), and half of how that changes goes on; sd half a spacing from a sample = s2 2^-H
 """
 from __future__ import annotations
 
@@ -64,8 +64,23 @@ def growth(z):
                 squares = [np.mean([np.mean(e[tile][both[tile]] ** 2) for e in pair]) for pair in (near, far)]
                 exponents.append(0.5 * math.log2(squares[1] / squares[0]))
                 counts.append(both[tile].sum())
-    exponent = float(np.average(exponents, weights=counts))
+    exponent = float(np.average(exponents, weights=counts)) + continued(z)
     return exponent, s2 * 2 ** -exponent
+
+
+def continued(z):
+    """What is added to H below the cell: half of its change from spacings of 4 and 8 samples to 2 and 4, at most 0.2."""
+    around = 8
+    inside = np.s_[around:-around, around:-around]
+    squares = [np.mean([e[inside] ** 2 for e in residuals(z, q)[:2]], axis=0) for q in (1, 2, 4)]
+    exponents, counts = [], []
+    for r in range(0, squares[0].shape[0], 32):
+        for c in range(0, squares[0].shape[1], 32):
+            means = [np.mean(s[r:r + 32, c:c + 32]) for s in squares]
+            exponents.append([0.5 * math.log2(means[i + 1] / means[i]) for i in (0, 1)])
+            counts.append(squares[0][r:r + 32, c:c + 32].size)
+    first, second = np.average(exponents, axis=0, weights=counts)
+    return float(np.clip(0.5 * (first - second), -0.2, 0.2))
 
 
 def local_variation(z, exponent, anti=False):

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "error_model/fractal_surface.h"
 #include "error_model/residual_growth.h"
 #include "support/terrains.h"
 
@@ -30,6 +32,35 @@ TEST(ResidualGrowth, TellsMeansFromSamples) {
   means.add(coarse(256, 4, true));
   EXPECT_GT(means.means_score(), samples.means_score() + 0.4);
   EXPECT_GT(means.exponent(0), samples.exponent(0) + 0.1);
+}
+
+TEST(ResidualGrowth, SteepHillsAreOnTheRightSideOfTheScore) {
+  const auto ground = [](int r, int c) { return hills(r, c, 1.2, 7); };
+  const auto scored = [&](bool means) {
+    ResidualGrowth growth;
+    growth.add(grid_from(200, 200, [&](int r, int c) {
+      if (!means) return ground(3 * r, 3 * c);
+      double sum = 0;
+      for (int i = 0; i < 9; ++i) sum += ground(3 * r + i / 3, 3 * c + i % 3);
+      return sum / 9;
+    }));
+    return growth.means_score();
+  };
+  EXPECT_LT(scored(false), 0.65);
+  EXPECT_GT(scored(true), 0.65);
+}
+
+TEST(ResidualGrowth, HalfOfTheLastChangeGoesOn) {
+  ResidualGrowth growth;
+  growth.add(coarse(256, 1, false));
+  const double change = growth.exponent(0) - growth.exponent(1);
+  EXPECT_NEAR(growth.continued(0.8, 0, CellContent::kSamples), 0.8 + std::clamp(change / 2, -0.2, 0.2),
+              1e-12);
+  // What means show by themselves does not count.
+  const double h = 0.8, own = apparent_exponent(h, CellContent::kMeans, 0) -
+                              apparent_exponent(h, CellContent::kMeans, 1);
+  EXPECT_NEAR(growth.continued(h, 0, CellContent::kMeans), h + std::clamp((change - own) / 2, -0.2, 0.2),
+              1e-12);
 }
 
 TEST(ResidualGrowth, OneCliffDoesNotSpeakForThePlain) {

@@ -46,8 +46,8 @@ TEST(SelfCheck, FlatRoofsAreFlatUpToTheirEdges) {
   };
   const SelfCheck check =
       check_of(grid_from(256, 256, [&](int r, int c) { return block(r, c) + 0.05 * noise(r, c, 1); }));
-  EXPECT_LT(check.steps().level, 0.6);
-  EXPECT_GT(check.steps().step, 1.5);
+  EXPECT_LT(check.steps().level.variance, 0.6);
+  EXPECT_GT(check.steps().step.variance, 1.5);
 }
 
 TEST(SelfCheck, SelfAffineGroundIsTheSameOnLevelsAndSteps) {
@@ -55,13 +55,25 @@ TEST(SelfCheck, SelfAffineGroundIsTheSameOnLevelsAndSteps) {
   EXPECT_TRUE(check.steps().is_even());
 }
 
-TEST(StepVariance, GoesFromLevelToStep) {
-  const StepVariance steps{0.25, 4};
+// Most of the ground is bare; what stands on the rest is all the higher.
+TEST(SelfCheck, LevelGroundThatIsMostlyBareHasHeavyTails) {
+  const auto stands = [](int r, int c) { return noise(r / 3, c / 3, 5) < 0.15 ? 4 * noise(r, c, 6) : 0; };
+  const SelfCheck check =
+      check_of(grid_from(256, 256, [&](int r, int c) { return 0.02 * noise(r, c, 1) + stands(r, c); }));
+  EXPECT_GT(check.steps().level.tail, 0.8);
+  EXPECT_LT(check.steps().step.tail, check.steps().level.tail);
+}
+
+TEST(StepLaw, GoesFromLevelToStep) {
+  const StepLaw steps{{0.25, 1.2}, {4, 0.2}};
   EXPECT_DOUBLE_EQ(steps.factor(0, 2), 0.5);
   EXPECT_NEAR(steps.factor(1e6, 2), 2, 1e-9);
   EXPECT_DOUBLE_EQ(steps.factor(2, 2), std::sqrt(0.5 * (0.25 + 4)));
   EXPECT_DOUBLE_EQ(steps.factor(NAN, 2), 1);
   EXPECT_DOUBLE_EQ(steps.factor(0, 0), 1);
+  EXPECT_DOUBLE_EQ(steps.tail(0, 2), 1.2);
+  EXPECT_DOUBLE_EQ(steps.tail(2, 2), 0.7);
+  EXPECT_DOUBLE_EQ(steps.tail(NAN, 2), 0.2);
 }
 
 }  // namespace

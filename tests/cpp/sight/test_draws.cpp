@@ -17,6 +17,28 @@ TEST(Draws, TheLogarithmIsOne) {
   EXPECT_EQ(minus_log(1), 0);
 }
 
+TEST(Draws, TheExponentialIsOne) {
+  for (float x = -80; x <= 80; x += 0.013f) EXPECT_NEAR(exponential(x) / std::exp(double(x)), 1, 3e-7) << x;
+}
+
+// n E^q: its mean square is 1, and of n^2 and E^2q the fourth moment is 3 Gamma(4q + 1) / Gamma(2q + 1)^2.
+TEST(Draws, ScalesArePowersOfAnExponentialVariable) {
+  constexpr int kDraws = 2000000;
+  for (const double q : {0.0, 0.25, 0.5, 0.8, 1.1, 1.5}) {
+    double squares = 0, logs = 0;
+    for (std::uint32_t n = 0; n < kDraws; ++n) {
+      const double s =
+          power_scale(log_exponential_from(draw_bits(draw_key(4, 2, 1), n)), static_cast<float>(q));
+      squares += s * s;
+      logs += std::log(s);
+    }
+    const double spread = std::sqrt(std::tgamma(4 * q + 1) / std::pow(std::tgamma(2 * q + 1), 2) - 1);
+    EXPECT_NEAR(squares / kDraws, 1, 5e-3 + 4 * spread / std::sqrt(kDraws)) << q;
+    const double gamma = 0.57721566490153286;  // E ln E = -gamma
+    EXPECT_NEAR(logs / kDraws, -q * gamma - 0.5 * std::lgamma(2 * q + 1), 5e-3) << q;
+  }
+}
+
 // The largest distance from the normal distribution: 1.63 / sqrt(n) is passed once in a hundred times
 // (Kolmogorov).
 double off_normal(std::vector<double> draws) {

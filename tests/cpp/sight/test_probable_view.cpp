@@ -68,7 +68,7 @@ TEST_P(ProbableViews, see_the_same_as_when_all_is_drawn) {
   ground.error.sampling = SampleField(test.spread);
   if (test.is_steep) {
     ground.error.tails = Tails::kLaplace;
-    ground.error.steps = {0.3, 2.5};
+    ground.error.steps = {{0.3, 1.3}, {2.5, 0.2}};
     ground.error.noise = CorrelatedNoise(40, {10, 10});
   }
   Progress progress;
@@ -82,7 +82,7 @@ TEST_P(ProbableViews, see_the_same_as_when_all_is_drawn) {
                       3,
                       test.is_learnt ? &behind.rises : nullptr,
                       behind.has_shared() ? &behind.shared : nullptr,
-                      largest_draw(ground.error.tails)};
+                      largest_draw(ground.error)};
   const Seen made = look(terrain, test.col, test.row, refinement);
   terrain.largest_draw = 1e4f;
   const Seen everywhere = look(terrain, test.col, test.row, refinement);

@@ -21,9 +21,15 @@ class Ground {
   Ground(double length_cells, float own, Tails tails, int row = 100, int col = 200)
       : ground_(flat(length_cells, tails)),
         own_(own),
-        terrain_{
-            ground_.heights,    own_, ground_.error, row, col, 9, nullptr, length_cells > 0 ? &one_ : nullptr,
-            largest_draw(tails)} {}
+        terrain_{ground_.heights,
+                 own_,
+                 ground_.error,
+                 row,
+                 col,
+                 9,
+                 nullptr,
+                 length_cells > 0 ? &one_ : nullptr,
+                 largest_draw(ground_.error)} {}
   Ground(const Ground&) = delete;
   Ground& operator=(const Ground&) = delete;
   const OpenTerrain& terrain() const { return terrain_; }
@@ -122,6 +128,32 @@ TEST(RealisedColumns, LargeErrorsStandTogetherInPairsOfCells) {
   EXPECT_NEAR(apart, 0.5, 0.01);                                   // E|z|^2 = 1 / 2
   EXPECT_NEAR(beside, 0.5 * (apart + 2 / std::acos(-1.0)), 0.01);  // every other pair lies in one tile
   EXPECT_NEAR(mean_product(z, 0, 1, [](double x) { return x; }), 0, 0.01);
+}
+
+// The 68.3 and the 95 % quantiles of n E^q over its rms, by integration.
+TEST(RealisedColumns, BetweenLevelHeightsTheTailsAreThoseOfLevelGround) {
+  const StepLaw steps{{1, 1.25}, {1, 0.25}};
+  const Departure own{draw_key(1, 2, 3), draw_key(4, 5, 6), 2, {0.7f}};
+  const auto quantiles = [&](float rise) {
+    std::vector<double> sizes;
+    for (std::uint32_t first = 0; first < 1600000; first += kLanes) {
+      Lanes a{}, b, out;
+      std::ranges::fill(b.v, rise);
+      draw_on_way(own, steps, first, a, b, 0.25f, out);
+      for (const float z : out.v) sizes.push_back(std::abs(double(z) - 0.25 * rise) / 2);
+    }
+    std::ranges::sort(sizes);
+    const auto at = [&](double share) {
+      return sizes[static_cast<std::size_t>(share * double(sizes.size()))];
+    };
+    return std::pair{at(0.683), at(0.95)};
+  };
+  const auto [level, level_far] = quantiles(0);
+  EXPECT_NEAR(level, 0.416, 0.01);
+  EXPECT_NEAR(level_far, 2.02, 0.03);
+  const auto [step, step_far] = quantiles(1e4f);  // floats of that size are 5e-4 apart
+  EXPECT_NEAR(step, 0.932, 0.01);
+  EXPECT_NEAR(step_far, 2.028, 0.03);
 }
 
 TEST(RowBetween, IsWhereTheRayCrossesIt) {
