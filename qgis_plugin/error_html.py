@@ -59,6 +59,13 @@ def in_words(model):
     return " ".join(told)
 
 
+def _drawn_tails(model):
+    if model.level_tail is None:
+        return []
+    told = f"{model.level_tail:.2g}; {model.step_tail:.2g}"
+    return [(tr("Tails of what is drawn on level ground and on steps (0 is normal, 0.5 laplace)"), told)]
+
+
 def _model_rows(model):
     report = model.report
     rows = [
@@ -69,6 +76,7 @@ def _model_rows(model):
         (tr("Correlation length of the samples' error (m)"), f"{model.correlation_length:.4g}"),
         (tr("Bias (m, model minus truth)"), f"{model.shared_bias:.4g}"),
         (tr("Tails"), tr(model.tails or "normal")),
+        *_drawn_tails(model),
         (tr("A cell holds (0 looks like samples, 1 like means)"), f"{model.samples_or_means} ({report['means_score']:.2g})"),
         (tr("Ridges and valleys planed off (m per m of curvature)"), f"{report['ridge_gain']:.3g}"),
     ]

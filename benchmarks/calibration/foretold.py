@@ -19,7 +19,10 @@ def arguments():
     parser.add_argument("dem", nargs="*", help="fine DEMs; name=path[,feet][,sea=0]")
     parser.add_argument("--fractal", type=float, action="append", default=[], metavar="H", help="a fractal truth as well")
     parser.add_argument("--factor", type=int, nargs="+", default=[4, 8], help="even numbers: half-way is a sample then")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if any(factor % 2 for factor in options.factor):
+        parser.error("--factor wants even numbers")
+    return options
 
 
 def between(samples, factor, shape):

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Turns the results of calibrate.py into tables (Markdown, to standard output) and reliability diagrams (SVG).
+"""Turns the results of calibrate.py into tables and a summary (Markdown, to standard output) and reliability diagrams (SVG).
 
     benchmarks/calibration/report.py calibration.json --diagrams docs/images/calibration.svg
 """
@@ -44,6 +44,50 @@ def level_table(cases, levels):
         cells = [f"{percent(claims[v][kind]['right'], 2)} of {percent(claims[v][kind]['share'])}"
                  for kind in ("visible", "hidden") for v in levels]
         print(f"| {name_of(case)} | " + " | ".join(cells) + " |")
+
+
+def listed(cases, holds):
+    """How many hold, and which do not."""
+    failing = [name_of(case) for case in cases if not holds(case)]
+    return f"{len(cases) - len(failing)} of {len(cases)}" + (f" (not: {'; '.join(failing)})" if failing else "")
+
+
+def bin_holds(one):
+    return abs(one["p"] - one["seen"]) <= 0.03 + 2 * one["se"]
+
+
+def median_and_range(values):
+    ordered = sorted(values)
+    return f"{ordered[0]:.2f} to {ordered[-1]:.2f}, median {ordered[len(ordered) // 2]:.2f}"
+
+
+def summary(cases, levels):
+    """What holds, and what does not. A claim that nowhere was made holds."""
+    probable = {id(case): case["methods"]["probable"] for case in cases}
+    for kind in ("visible", "hidden"):
+        for level in levels:
+            def right(case):
+                share = probable[id(case)]["claims"][level][kind]["right"]
+                return share is None or share != share or share >= float(level)
+            print(f"- {kind} at {100 * float(level):g} %: holds in {listed(cases, right)}")
+    bins = {id(case): [b for b in probable[id(case)]["bins"] if b["cells"] >= 200] for case in cases}
+    print(f"- every bin of 200 cells within three points and two standard errors: "
+          f"{listed(cases, lambda case: all(map(bin_holds, bins[id(case)])))}")
+    every = [b for case in cases for b in bins[id(case)]]
+    print(f"- bins that hold: {sum(map(bin_holds, every))} of {len(every)}")
+    off = {id(case): sum(b["cells"] * (b["seen"] - b["p"]) for b in bins[id(case)] if 0.05 < b["p"] < 0.95)
+           / max(1, sum(b["cells"] for b in bins[id(case)] if 0.05 < b["p"] < 0.95)) for case in cases}
+    print("- seen less claimed, mean over bins from 0.05 to 0.95: "
+          + "; ".join(f"{name_of(case)} {off[id(case)]:+.2f}" for case in sorted(cases, key=lambda case: off[id(case)])))
+    print(f"- samples or means told apart: {listed(cases, lambda case: case['learnt']['samples_or_means'] == case['cells'])}")
+
+    def ratio(of, over):
+        return median_and_range([of(case["methods"]["probable"]) / over(case["methods"]) for case in cases])
+
+    print("- uncertain at 95 % over pointwise: " + ratio(
+        lambda one: one["claims"]["0.95"]["uncertain"], lambda methods: methods["pointwise"]["claims"]["0.95"]["uncertain"]))
+    print("- Brier score over ordinary: " + ratio(lambda one: one["brier"], lambda methods: methods["ordinary"]["brier"]))
+    print("- Brier score over pointwise: " + ratio(lambda one: one["brier"], lambda methods: methods["pointwise"]["brier"]))
 
 
 def diagram(case, left, top):
@@ -95,7 +139,10 @@ def main():
     cases.sort(key=lambda case: (case["terrain"], case["factor"], case["cells"], case["noise_m"]))
     claim_table(cases, options.level)
     print()
-    level_table(cases, ("0.9", "0.95", "0.99"))
+    levels = ("0.9", "0.95", "0.99")
+    level_table(cases, levels)
+    print()
+    summary(cases, levels)
     if options.diagrams:
         draw(cases, options.diagrams)
 

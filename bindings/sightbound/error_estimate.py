@@ -94,6 +94,9 @@ def estimate_error(
         if learnt.samples_or_means is None:
             learnt.samples_or_means = seen
     found = core.estimate(source, learnt.samples_or_means, parts.next())
+    if given.tails is None and given.level_tail is None and given.geologic_variation is None and (found.level_tail or found.step_tail):
+        # Before check points tell the tails of the samples' error: these are of what lies between.
+        learnt.level_tail, learnt.step_tail = found.level_tail, found.step_tail
     report: dict[str, Any] = {
         "growth_exponent": found.growth_exponent,
         "typical_sigma": found.typical_m,

@@ -50,7 +50,7 @@ class ErrorModel:
         step_variance: the same where they step.
         level_tail: how unevenly what is drawn is spread where they stand level: the power of an exponential variable that
             its scale is (0: normal; 0.5: Laplace's distribution; 1.5 at most: most roofs are bare, a few have a chimney).
-            Needs a geologic_variation that is estimated. None: as `tails`, unless estimated.
+            Needs a geologic_variation that is estimated, and step_tail. None: as `tails`, unless estimated.
         step_tail: the same where they step.
 
     Raises:

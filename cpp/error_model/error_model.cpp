@@ -146,6 +146,8 @@ void ErrorModel::validate() const {
   require_between("shared_bias", shared_bias, -kLargestError, kLargestError, " m");
   if (level_variance) require_between("level_variance", *level_variance, 0, kLargestVariance, "");
   if (step_variance) require_between("step_variance", *step_variance, 0, kLargestVariance, "");
+  if (level_tail.has_value() != step_tail.has_value())
+    throw InvalidInput("level_tail and step_tail belong together: give both or none.");
   if (level_tail) require_between("level_tail", *level_tail, 0, StepLaw::kLargestTail, "");
   if (step_tail) require_between("step_tail", *step_tail, 0, StepLaw::kLargestTail, "");
   if (ridge_gain) require_between("ridge_gain", *ridge_gain, -kLargestRidgeGain, kLargestRidgeGain, "");

@@ -161,10 +161,10 @@ class Blocks {
   std::size_t spread_ = 0;
 };
 
+// A residual holds the sample's own rounding and half of the sum of two others'.
 constexpr double kRoundingShare = 1.5;
 
-// Rounded heights add the same to the residuals of every spacing and hide the growth of what is left. A
-// residual holds the sample's own rounding and half of the sum of two others'.
+// Rounded heights add the same to the residuals of every spacing and hide the growth of what is left.
 double exponent_of(const std::vector<Tile>& tiles, double rounding_m, double float_noise) {
   constexpr double kLeastLeft = 0.1;
   const double rounding = kRoundingShare * rounding_m * rounding_m;
@@ -229,25 +229,33 @@ void judge_content(const ResidualGrowth& growth, std::optional<CellContent> aske
   if (!asked && rough_enough && out.content_score >= kMeansFrom) out.content = CellContent::kMeans;
 }
 
+// Residuals are so small that rounding hides how they grow and how they are distributed.
+bool rounding_shows(const Estimate& found) {
+  constexpr double kHidden = 0.05;  // its share in them
+  return kRoundingShare * found.rounding_m * found.rounding_m > kHidden * found.edge_ms;
+}
+
 // What lies between the samples is of shorter spacings than those measured.
 void continue_growth(const ResidualGrowth& growth, Estimate& out) {
-  if (growth.places() < kEnough || out.edge_ms <= 0) return;
-  constexpr double kHidden = 0.05;  // share of rounding in the residuals that hides how exponents change
-  if (kRoundingShare * out.rounding_m * out.rounding_m > kHidden * out.edge_ms) return;
+  if (growth.places() < kEnough || out.edge_ms <= 0 || rounding_shows(out)) return;
   out.growth_exponent =
       std::clamp(growth.continued(out.growth_exponent, 0, out.content), kLeastExponent, kLargestExponent);
 }
 
-void check_itself(const std::vector<Grid<float>>& blocks, double second_exponent, Estimate& out,
+void check_itself(const std::vector<Grid<float>>& blocks, const ResidualGrowth& growth, Estimate& out,
                   Progress& progress) {
   if (out.rms_of_spacing[0] <= 0) return;
-  SelfCheck check(std::clamp(second_exponent, kLeastExponent, kLargestExponent), out.rms_of_spacing[0]);
+  const double measured = growth.exponent(1);
+  const double exponent =
+      rounding_shows(out) ? measured : growth.continued(measured, 1, CellContent::kSamples);
+  SelfCheck check(std::clamp(exponent, kLeastExponent, kLargestExponent), out.rms_of_spacing[0]);
   for (const Grid<float>& block : blocks) check.add(block, progress);
   check.finish();
   if (check.places() < kEnough) return;
   const auto q = [&](double share) { return check.quantile(share); };
   out.self_check = {check.places(), q(0.5), q(0.683), q(0.9), q(0.95), q(0.99)};
   out.steps = check.steps();
+  if (rounding_shows(out)) out.steps.level.tail = out.steps.step.tail = 0;
   out.tails = check.tails();
   out.local_scale = check.scale();
 }
@@ -285,7 +293,7 @@ Estimate estimate(const DemSource& source, std::optional<CellContent> content, P
     judge_few(sums, out);
   }
   continue_growth(growth, out);
-  check_itself(kept, growth.continued(growth.exponent(1), 1, CellContent::kSamples), out, progress);
+  check_itself(kept, growth, out, progress);
   out.typical_m = out.typical_with(out.growth_exponent);
   return out;
 }
@@ -301,8 +309,10 @@ ErrorModel with_estimate(ErrorModel model, const Estimate& estimate) {
     if (!model.ridge_gain) model.ridge_gain = estimate.ridge_gain;
     if (!model.tails) {
       model.tails = estimate.tails;
-      if (!model.level_tail && !estimate.steps.is_normal()) model.level_tail = estimate.steps.level.tail;
-      if (!model.step_tail && !estimate.steps.is_normal()) model.step_tail = estimate.steps.step.tail;
+      if (!model.level_tail && !estimate.steps.is_normal()) {
+        model.level_tail = estimate.steps.level.tail;
+        model.step_tail = estimate.steps.step.tail;
+      }
     }
     if (!estimate.steps.has_one_variance()) {
       if (!model.level_variance) model.level_variance = estimate.steps.level.variance;

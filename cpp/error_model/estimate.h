@@ -2,10 +2,10 @@
 // Learning a DEM's between-sample error from the DEM itself, without any truth.
 //
 // Leave out every other sample, see how far the others' surface misses those left out (spacing 2: s2; the
-// same places from samples twice as far apart: s4); the error grows as spacing^H with H = log2(s4 / s2), so
-// at the DEM's own spacing it is s2 2^-H. Where cells are means the residuals of short spacings are too
-// small, in a way that follows from H (fractal_surface.h). What this is worth on known terrain:
-// docs/concepts/error_model.md.
+// same places from samples twice as far apart: s4); the error grows as spacing^H, so at the DEM's own spacing it
+// is s2 2^-H. H is log2(s4 / s2) and half of what it changed by from the spacings before: real ground grows
+// faster towards shorter ones. Where cells are means the residuals of short spacings are too small, in a way that
+// follows from H (fractal_surface.h). What this is worth on known terrain: docs/concepts/error_model.md.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ inline constexpr int kEstimateBlockSide = 256;
 inline constexpr double kOversampledExponent = 1.7;  // above, cells are smaller than what was measured
 
 struct Estimate {
-  double growth_exponent = 1;  // H, within 0.1 to 2
+  double growth_exponent = 1;  // H below the spacing, within 0.1 to 2
   double typical_m = 0;        // rms over the DEM of the sd half a spacing from a sample, with that H
   double rounding_m = 0;  // sd of the rounding of heights to a step (integer metres: 0.29 m); 0 = none found
   double edge_ms = 0,
@@ -33,7 +33,7 @@ struct Estimate {
   double rms_of_spacing[3] = {0, 0, 0};
 
   CellContent content = CellContent::kSamples;  // as asked, or as it looks
-  double content_score = 0;  // 0: grows like samples, 1: like means of cells; in between it is not clear
+  double content_score = 0;  // 0: like samples, 1: like means of cells; between 0.5 and 0.8 it is not clear
   double ridge_gain = 0;     // by least squares: 0 to 0.25 (fractal_surface.h: 0.15 for smooth ground)
 
   // From predicting the DEM's own samples out of every other one: error over predicted sd.
@@ -51,7 +51,7 @@ struct Estimate {
   double typical_with(double exponent) const;
 };
 
-// `content` empty: samples or means, whichever the growth of residuals from spacing 2 to 4 to 8 looks like.
+// `content` empty: samples or means, whichever the residuals and twists of short spacings look like.
 //
 // Looks at blocks spread over the whole DEM, a fixed function of the raster, so that the answer does not
 // depend on who asks for which window; more of them only where most heights are missing. Blocks lie on the

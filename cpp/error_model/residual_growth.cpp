@@ -14,6 +14,8 @@ constexpr int kReach = 8;              // of the widest spacing
 constexpr int kTile = 32;              // samples: growth is measured on each by itself
 constexpr double kOfNextOctave = 0.5;  // share of its change that the first octave is expected to have
 constexpr double kOfTwists = 0.75;     // their share in the score
+// No mean over cells does more; walls along the grid do, whose twists stand at corners alone.
+constexpr double kMostOfMeans = 2.5;
 constexpr double kMostContinued = 0.2;
 constexpr double kLargestGain = 0.25;
 
@@ -112,12 +114,13 @@ double ResidualGrowth::change_of_twists() const {
 
 double ResidualGrowth::means_score() const {
   const double h = exponent_from_apparent(exponent(0), CellContent::kMeans);
-  const auto of_means = [&](int octave) { return apparent_exponent(h, CellContent::kMeans, octave); };
+  const auto growth = [&](int octave) { return apparent_exponent(h, CellContent::kMeans, octave); };
+  const auto twists = [&](int octave) { return twist_over_residual(h, CellContent::kMeans, octave); };
   const double by_growth =
-      change(exponent(0), exponent(1), exponent(2)) / change(of_means(0), of_means(1), of_means(2));
-  const double by_twists = change_of_twists() / (twist_over_residual(h, CellContent::kMeans, 0) -
-                                                 twist_over_residual(h, CellContent::kMeans, 1));
-  return kOfTwists * by_twists + (1 - kOfTwists) * std::clamp(by_growth, 0.0, 1.0);
+      change(exponent(0), exponent(1), exponent(2)) / change(growth(0), growth(1), growth(2));
+  const double by_twists = change_of_twists() / (twists(0) - twists(1));
+  if (by_twists > kMostOfMeans) return 0;
+  return kOfTwists * std::clamp(by_twists, 0.0, 1.0) + (1 - kOfTwists) * std::clamp(by_growth, 0.0, 1.0);
 }
 
 double ResidualGrowth::ridge_gain() const {

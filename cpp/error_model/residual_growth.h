@@ -31,8 +31,9 @@ class ResidualGrowth {
   // 0: what short spacings show goes on as samples would have it, 1: as means over the cells would, which
   // level out what is short, in a way that follows from H (fractal_surface.h). Two witnesses: how the
   // exponent changes (where H itself changes with the spacing the next octave tells how much of that to leave
-  // out), and, with three times the weight, how twists change in units of residuals, which hardly depends on
-  // H. Between 0.4 and 0.8 it is not clear.
+  // out), and, with three times the weight, how twists change in units of residuals: a change of H by 0.1
+  // looks like half of the means' effect to the first, like a third to the second. Between 0.5 and 0.8 it is
+  // not clear.
   double means_score() const;
 
   // Of the truth above the middle of two samples over what that stands above the middle of the next two, by

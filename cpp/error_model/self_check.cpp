@@ -18,9 +18,9 @@ constexpr std::size_t kBins = static_cast<std::size_t>(kLargest / kBin) + 1;
 constexpr std::size_t kSteps = 16;
 constexpr double kOutlier = 5;  // sds: no single error counts for more
 constexpr double kLeastVariance = 0.1, kLargestVariance = 3;
-constexpr double kUsual = 0.75;      // nearer to 1 makes no difference: self-affine ground has 0.85 to 1.05
-constexpr double kUsualTail = 0.15;  // self-affine ground has 0 to 0.1
-constexpr double kFewest = 100;      // places of a class that quantiles are taken of
+constexpr double kUsual = 0.75;     // nearer to 1 makes no difference: self-affine ground has 0.85 to 1.05
+constexpr double kUsualTail = 0.2;  // self-affine ground has 0 to 0.1
+constexpr double kFewest = 400;     // places of a class that a 95 % quantile is taken of: q within 0.15
 constexpr double kCore = 0.683, kFar = 0.99, kClaimed = 0.95;
 constexpr double kLeastScale = 0.6, kLargestScale = 1.7;
 
@@ -116,7 +116,9 @@ double tail_with(double claimed_over_core) {
   std::size_t i = 1;
   while (i + 1 < kRatios.size() && claimed_over_core > kRatios[i]) ++i;
   const double part = (claimed_over_core - kRatios[i - 1]) / (kRatios[i] - kRatios[i - 1]);
-  return std::clamp(0.25 * (static_cast<double>(i - 1) + part), 0.0, StepLaw::kLargestTail);
+  // Below 0 for classes that are lighter than normal by chance, or the mean of many would not be 0.
+  return std::clamp(0.25 * (static_cast<double>(i - 1) + part), -StepLaw::kLargestTail,
+                    StepLaw::kLargestTail);
 }
 
 void fit_tails(const LevelAndStep& tails, StepLaw& out) {

@@ -15,7 +15,7 @@ namespace sightbound {
 
 class SelfCheck {
  public:
-  // `exponent`: log2 of the residuals' growth from spacing 4 to 8; `typical_m`: see local_variation.
+  // `exponent`: of the residuals' growth from spacing 2 to 4; `typical_m`: see local_variation.
   SelfCheck(double exponent, double typical_m);
 
   void add(const Grid<float>& block, Progress&);

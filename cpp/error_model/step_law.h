@@ -23,6 +23,7 @@ struct StepLaw {
   static constexpr double kLargestTail = 1.5;
 
   Ground level, step;
+  bool has_tails = false;  // else what is drawn has those of the error model
 
   // h; that of a step where nothing is known (NaN).
   static double share_of_step(double half_range_m, double sigma_m) {
@@ -43,7 +44,7 @@ struct StepLaw {
   // sigma^2 counts the same everywhere.
   bool has_one_variance() const { return level.variance == 1 && step.variance == 1; }
   bool has_one_tail() const { return level.tail == step.tail; }
-  bool is_normal() const { return level.tail == 0 && step.tail == 0; }
+  bool is_normal() const { return level.tail == 0 && step.tail == 0; }  // of its tails
   // Where the ground steps makes no difference.
   bool is_even() const { return has_one_variance() && has_one_tail(); }
   double largest_factor() const { return std::sqrt(std::max(level.variance, step.variance)); }

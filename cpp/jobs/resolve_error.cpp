@@ -209,7 +209,8 @@ void add_geometry(ErrorField& field, const Job& job, const Georeference& georefe
   field.surface = fractal_surface(*job.model.growth_exponent, content_of(job.model), cell.row_m / cell.col_m);
   field.ridge_gain = job.model.ridge_gain.value_or(0);
   field.steps = {{job.model.level_variance.value_or(1), job.model.level_tail.value_or(0)},
-                 {job.model.step_variance.value_or(1), job.model.step_tail.value_or(0)}};
+                 {job.model.step_variance.value_or(1), job.model.step_tail.value_or(0)},
+                 job.model.level_tail.has_value()};
 }
 
 }  // namespace

@@ -131,8 +131,9 @@ SIGHTBOUND_INLINE float normal_from(std::uint32_t bits) {
 // No normal draw is farther from 0: the 23 bits that normal_from uses end at 5.3. Heavier tails are cut off.
 inline constexpr float kLargestDraw = 5.4f, kLargestOfHeavyTails = 8;
 
-// Heavier tails are normal draws whose scale is drawn too (Andrews and Mallows 1974), of rms 1: a power of an
-// exponential variable E (1/2: Laplace), or for Student's t the root of 3 / chi^2 of five degrees of freedom.
+// Heavier tails are normal draws whose scale is drawn too (Andrews and Mallows 1974), of rms 1 but for what
+// the largest draw cuts off (0.97 and 0.94 for powers of 1.25 and 1.5): a power of an exponential variable E
+// (1/2: Laplace), or for Student's t the root of 3 / chi^2 of five degrees of freedom.
 struct DrawnTails {
   float power = 0;
   bool student = false;

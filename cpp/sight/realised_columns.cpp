@@ -2,6 +2,7 @@
 #include "sight/realised_columns.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sightbound {
@@ -22,19 +23,25 @@ float mean_amplitude(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
   return 0.25f * ((amplitude.at(r, c) + amplitude.at(r1, c1)) + (amplitude.at(r, c1) + amplitude.at(r1, c)));
 }
 
-// Half the range of the samples around, and the sd of what lies between them, metres.
+// Half the range of the samples around (NaN: not all are known), and the sd of what lies between them,
+// metres.
 struct Around {
   double half_range, sigma;
 };
 Around around(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
   const Grid<float>& z = terrain.mean;
-  const auto [low, high] = std::minmax({z.at(r, c), z.at(r, c1), z.at(r1, c), z.at(r1, c1)});
-  return {0.5 * (high - low), mean_amplitude(terrain, r, c, r1, c1) * terrain.error.plain_per_amplitude()};
+  const std::array corners{z.at(r, c), z.at(r, c1), z.at(r1, c), z.at(r1, c1)};
+  const bool known = std::ranges::none_of(corners, [](float height) { return std::isnan(height); });
+  const auto [low, high] = std::ranges::minmax_element(corners);
+  return {known ? 0.5 * (*high - *low) : NAN,
+          mean_amplitude(terrain, r, c, r1, c1) * terrain.error.plain_per_amplitude()};
 }
 
 }  // namespace
 
-bool is_normal(const ErrorField& error) { return error.tails == Tails::kNormal && error.steps.is_normal(); }
+bool is_normal(const ErrorField& error) {
+  return error.tails == Tails::kNormal && (!error.steps.has_tails || error.steps.is_normal());
+}
 
 double factor_between(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
   if (terrain.error.steps.has_one_variance()) return 1;
@@ -44,7 +51,7 @@ double factor_between(const OpenTerrain& terrain, int r, int c, int r1, int c1) 
 
 DrawnTails tails_between(const OpenTerrain& terrain, int r, int c, int r1, int c1) {
   const StepLaw& steps = terrain.error.steps;
-  if (!is_learnt(terrain) || steps.is_normal()) return drawn_tails(terrain.error.tails);
+  if (!is_learnt(terrain) || !steps.has_tails) return drawn_tails(terrain.error.tails);
   if (steps.has_one_tail()) return {static_cast<float>(steps.level.tail)};
   const Around at = around(terrain, r, c, r1, c1);
   return {static_cast<float>(steps.tail(at.half_range, at.sigma))};

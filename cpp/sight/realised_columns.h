@@ -195,8 +195,8 @@ SIGHTBOUND_INLINE void draw_on_way(const Departure& own, const StepLaw& steps, s
   const float s2 = own.spread * own.spread, room = part * (1 - part);
   Lanes x, step;
   for (int l = 0; l < kLanes; ++l) {
-    const float rise = b.v[l] - a.v[l], g2 = room * rise * rise;
-    step.v[l] = g2 / (s2 + g2);
+    const float rise = b.v[l] - a.v[l], g2 = room * rise * rise, share = g2 / (s2 + g2);
+    step.v[l] = share >= 0 ? share : 1;  // unknown ground stays unknown
   }
   fill_normal(own.key, first, x);
   if (!steps.has_one_tail()) {

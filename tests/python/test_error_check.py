@@ -69,6 +69,20 @@ def check_samples(errors, count=3000, **arguments):
     return sb.estimate_error(dem, checkpoints=np.c_[places, true], error_model=EXACT, **arguments)
 
 
+def test_tails_of_the_samples_do_not_take_the_place_of_those_between_them():
+    """Bare ground with things on it here and there, and check points at samples."""
+    rng = np.random.default_rng(11)
+    things = np.kron(rng.random((128, 128)) < 0.15, np.ones((2, 2))) * rng.uniform(1, 5, (256, 256))
+    dem = sb.Dem((things + rng.normal(0, 0.02, things.shape)).astype(np.float32), (0.0, 5.0, 0.0, 1280.0, 0.0, -5.0))
+    alone = sb.estimate_error(dem, samples_or_means="samples")
+    assert alone.level_tail > 0.8
+    places, rows, cols = points_on(dem, 600)
+    checked = sb.estimate_error(dem, checkpoints=np.c_[places, dem.heights[rows, cols] + rng.normal(0, 0.1, 600)], samples_or_means="samples")
+    assert (checked.level_tail, checked.step_tail) == (alone.level_tail, alone.step_tail)
+    told = sb.estimate_error(dem, error_model=sb.ErrorModel(tails="laplace"), samples_or_means="samples")
+    assert told.level_tail is None
+
+
 # ---- statistics
 
 

@@ -67,7 +67,7 @@ def test_the_nature_of_errors():
     assert (model.tails, model.correlation_length, model.shared_bias, model.samples_or_means, model.ridge_gain) == (None, 0, 0, None, None)
     assert sb.ErrorModel(samples_or_means="auto").samples_or_means is None
     for wrong in (dict(tails="cauchy"), dict(correlation_length=-1), dict(shared_bias=1e5), dict(samples_or_means="both"), dict(ridge_gain=3),
-                  dict(level_variance=-1), dict(step_variance=11), dict(level_tail=1.6), dict(step_tail=-0.1)):
+                  dict(level_variance=-1), dict(step_variance=11), dict(level_tail=1.6, step_tail=0), dict(step_tail=-0.1, level_tail=0), dict(level_tail=0.5)):
         with pytest.raises(ValueError, match=next(iter(wrong))):
             sb.ErrorModel(**wrong)
 

@@ -56,7 +56,15 @@ TEST(ErrorModelJson, TheNatureOfErrorsComesBackToTheLastBit) {
   model.shared_bias = -0.1;
   model.samples_or_means = CellContent::kMeans;
   model.ridge_gain = 1.0 / 7;
+  model.level_variance = 1.0 / 3;
+  model.step_variance = 7.0 / 3;
+  model.level_tail = 4.0 / 3;
+  model.step_tail = 0.1;
   const ErrorModel back = ErrorModel::from_json(model.to_json());
+  EXPECT_EQ(back.level_variance, 1.0 / 3);
+  EXPECT_EQ(back.step_variance, 7.0 / 3);
+  EXPECT_EQ(back.level_tail, 4.0 / 3);
+  EXPECT_EQ(back.step_tail, 0.1);
   EXPECT_EQ(back.tails, Tails::kLaplace);
   EXPECT_EQ(back.correlation_length, 100.0 / 3);
   EXPECT_EQ(back.shared_bias, -0.1);

@@ -88,6 +88,15 @@ TEST(Estimate, RoundingDoesNotHideTheGrowth) {
   EXPECT_NEAR(rounded.growth_exponent, exact.growth_exponent, 0.1);
 }
 
+// Most errors of rounded heights are exactly 0: that is no bare roof.
+TEST(Estimate, RoundingIsNotLearntAsTails) {
+  const auto terrain = [](int r, int c) { return 0.03 * hills(r, c, 0.9, 9); };
+  const Estimate rounded =
+      learnt(grid_from(400, 400, [&](int r, int c) { return std::round(terrain(r, c)); }));
+  EXPECT_GT(rounded.rounding_m, 0);
+  EXPECT_TRUE(rounded.steps.is_normal());
+}
+
 TEST(Estimate, SkipsHolesAndSpikes) {
   const auto terrain = [](int r, int c) { return hills(r, c, 0.9, 8); };
   const Estimate whole = learnt(grid_from(400, 400, terrain));

@@ -13,6 +13,7 @@ namespace {
 
 using testing::grid_from;
 using testing::hills;
+using testing::noise;
 
 // Of every `k`-th place, or means over k x k.
 Grid<float> coarse(int side, int k, bool means) {
@@ -48,6 +49,15 @@ TEST(ResidualGrowth, SteepHillsAreOnTheRightSideOfTheScore) {
   };
   EXPECT_LT(scored(false), 0.65);
   EXPECT_GT(scored(true), 0.65);
+}
+
+TEST(ResidualGrowth, WallsAlongTheGridAreNoMeans) {
+  const auto block = [](int r, int c) {
+    return r % 12 < 8 && c % 12 < 8 ? 3 + 9 * noise(r / 12, c / 12, 3) : 0;
+  };
+  ResidualGrowth growth;
+  growth.add(grid_from(256, 256, [&](int r, int c) { return block(r, c) + 0.02 * hills(r, c, 0.8, 9); }));
+  EXPECT_LT(growth.means_score(), 0.65);
 }
 
 TEST(ResidualGrowth, HalfOfTheLastChangeGoesOn) {

@@ -68,7 +68,7 @@ TEST_P(ProbableViews, see_the_same_as_when_all_is_drawn) {
   ground.error.sampling = SampleField(test.spread);
   if (test.is_steep) {
     ground.error.tails = Tails::kLaplace;
-    ground.error.steps = {{0.3, 1.3}, {2.5, 0.2}};
+    ground.error.steps = {{0.3, 1.3}, {2.5, 0.2}, true};
     ground.error.noise = CorrelatedNoise(40, {10, 10});
   }
   Progress progress;
