@@ -19,7 +19,8 @@ def percent(value, digits=1):
 
 def name_of(case):
     noise = f", {case['noise_m']:g} m error" if case["noise_m"] else ""
-    return f"{case['terrain']}, {case['factor']} × {case['cells']}{noise}"
+    told = ", told" if case["told"] else ""
+    return f"{case['terrain']}, {case['factor']} × {case['cells']}{told}{noise}"
 
 
 def claim_table(cases, level):
@@ -136,7 +137,7 @@ def main():
     parser.add_argument("--level", default="0.95")
     options = parser.parse_args()
     cases = json.loads(options.results.read_text())
-    cases.sort(key=lambda case: (case["terrain"], case["factor"], case["cells"], case["noise_m"]))
+    cases.sort(key=lambda case: (case["terrain"], case["factor"], case["cells"], case["told"], case["noise_m"]))
     claim_table(cases, options.level)
     print()
     levels = ("0.9", "0.95", "0.99")
