@@ -116,11 +116,11 @@ void BoundedMarch::judge(const Target& asked, const HeightRange& ground, const P
 }
 
 // Of ground between two nodes.
-HeightRange BoundedMarch::ground_at(const RayPlace& place, double part, const HeightRange& a,
-                                    const HeightRange& b) const {
+HeightRange BoundedMarch::ground_at(const RayPlace& place, const NodeStep& step, double part,
+                                    const HeightRange& a, const HeightRange& b) const {
   const auto share = static_cast<float>(part);
-  const float room = fine_.most_across(place, part);
-  return {a.low + share * (b.low - a.low) - room, a.high + share * (b.high - a.high) + room};
+  const float room = fine_.most_across(place, part), rise = fine_.rise_across(place, step, part);
+  return {a.low + share * (b.low - a.low) + rise - room, a.high + share * (b.high - a.high) + rise + room};
 }
 
 void BoundedMarch::cross(int ray, int line) {
@@ -128,8 +128,8 @@ void BoundedMarch::cross(int ray, int line) {
   const double minor = minors_[at(ray)], per_2r = fan_.per_2r(ray);
   const int before = fan_.node_before(minor);
   const RayPlace place = fan_.crossing(ray, line, minor);
-  const HeightRange ground =
-      ground_at(place, 2 * minor - before, nodes_.at(before), nodes_.at(fan_.node_behind(minor)));
+  const HeightRange ground = ground_at(place, {0, kNodeStep}, 2 * minor - before, nodes_.at(before),
+                                       nodes_.at(fan_.node_behind(minor)));
   HeightRange rise = slope_range(ground, eye_, ray_slope(place.s, per_2r));
   if (const Fineness fineness = refinement_.from_eye(line); fineness != Fineness::kNone) {
     FinePlaces places;
@@ -140,7 +140,7 @@ void BoundedMarch::cross(int ray, int line) {
   if (const auto row = horizon.line == line - 1 ? row_between(horizon.place, place) : std::nullopt;
       row && line > 0) {
     const HeightRange there =
-        ground_at(row->place, row->part, nodes_before_.at(row->node), nodes_.at(row->node));
+        ground_at(row->place, {kNodeStep, 0}, row->part, nodes_before_.at(row->node), nodes_.at(row->node));
     const HeightRange over = slope_range(there, eye_, ray_slope(row->place.s, per_2r));
     if (is_unknown) {
       rise = over;

@@ -85,7 +85,8 @@ class BoundedMarch {
   bool look_at(int line, const std::vector<int>& last_lines);
   void ask_targets(int line, const Wanted&, const ProbableEye&, const std::vector<int>& last_lines);
   void judge(const Target&, const HeightRange& ground, const ProbableEye&);
-  HeightRange ground_at(const RayPlace&, double part, const HeightRange& a, const HeightRange& b) const;
+  HeightRange ground_at(const RayPlace&, const NodeStep&, double part, const HeightRange& a,
+                        const HeightRange& b) const;
   void cross(int ray, int line);
   void keep_what_may_hide(int ray, float lowest_target);
   void mark(int line, int ray);

@@ -57,9 +57,27 @@ DrawKey FineGround::scale_of(double row, double col) const {
   return tile_key(terrain_.seed, half(row, terrain_.row + base_row_), half(col, terrain_.col + base_col_));
 }
 
-Departure FineGround::across(const RayPlace& place, double part) const {
+// From a to b terrain bends as the middles of cell sides show it: half-way, a share (distance / side)^2 of
+// what those rise by.
+float FineGround::rise(double row, double col, double rows, double cols) const {
+  if (!is_learnt(terrain_) || across_per_amplitude_ == 0) return 0;
+  const Square at = around(row, col);
+  const auto nearer = [](double x, int first, int second) {
+    return x - std::floor(x) < 0.5 ? first : second;
+  };
+  const MiddleRises& rises = *terrain_.rises;
+  return static_cast<float>(cols * cols * rises.row_edge.at(nearer(row, at.row, at.row1), at.col) +
+                            rows * rows * rises.col_edge.at(at.row, nearer(col, at.col, at.col1)));
+}
+
+float FineGround::rise_across(const RayPlace& place, const NodeStep& step, double part) const {
+  const double rows = transposed_ ? step.major : step.minor, cols = transposed_ ? step.minor : step.major;
+  return static_cast<float>(4 * part * (1 - part)) * rise(row_of(place), col_of(place), rows, cols);
+}
+
+Departure FineGround::across(const RayPlace& place, const NodeStep& step, double part) const {
   return {key_of(row_of(place), col_of(place), kCrossingDraws), scale_of(row_of(place), col_of(place)),
-          spread_across(place, part), tails(row_of(place), col_of(place))};
+          spread_across(place, part), tails(row_of(place), col_of(place)), rise_across(place, step, part)};
 }
 
 Departure FineGround::inside(const RayPlace& place, double along, double across) const {
@@ -67,7 +85,8 @@ Departure FineGround::inside(const RayPlace& place, double along, double across)
                         step_factor(row_of(place), col_of(place));
   const double parts = 4 * along * (1 - along) + 4 * across * (1 - across);
   return {key_of(row_of(place), col_of(place), kInsideDraws), scale_of(row_of(place), col_of(place)),
-          static_cast<float>(middle * std::sqrt(parts)), tails(row_of(place), col_of(place))};
+          static_cast<float>(middle * std::sqrt(parts)), tails(row_of(place), col_of(place)),
+          rise_across(place, {kNodeStep, 0}, along) + rise_across(place, {0, kNodeStep}, across)};
 }
 
 FineGround::Square FineGround::around(double row, double col) const {
@@ -96,11 +115,16 @@ float FineGround::spread_across(const RayPlace& place, double part) const {
   return static_cast<float>(middle * std::sqrt(4 * part * (1 - part)));
 }
 
+float FineGround::rise_along(const RayPlace& a, const RayPlace& b) const {
+  const RayPlace place = half_way(a, b);
+  return rise(row_of(place), col_of(place), row_of(b) - row_of(a), col_of(b) - col_of(a));
+}
+
 FinePlace FineGround::middle(const RayPlace& a, const RayPlace& b, double per_2r) const {
   const RayPlace place = half_way(a, b);
   const double row = row_of(place), col = col_of(place), half_m = 0.5 * std::abs(b.s - a.s);
   return {{key_of(row, col, kFineDraws), scale_of(row, col), spread(row, col, half_m, per_amplitude(half_m)),
-           tails(row, col)},
+           tails(row, col), rise_along(a, b)},
           ray_slope(place.s, per_2r)};
 }
 
@@ -118,7 +142,8 @@ float FineGround::highest(const FinePlaces& places, Fineness fineness, const Hei
                           const HeightRange& b, const HeightRange& eye) const {
   const auto between = [&](const FinePlace& place, const HeightRange& from, const HeightRange& to) {
     const float most = most_ * place.draw.spread;
-    return HeightRange{0.5f * (from.low + to.low) - most, 0.5f * (from.high + to.high) + most};
+    const float rise = place.draw.rise;
+    return HeightRange{0.5f * (from.low + to.low) + rise - most, 0.5f * (from.high + to.high) + rise + most};
   };
   const auto rise = [&](const FinePlace& place, const HeightRange& ground) {
     return slope_range(ground, eye, place.slope).high;

@@ -3,7 +3,8 @@
 // target a rise of decimetres decides, and none of the nodes may be there.
 //
 // Half-way between two known places D apart terrain rises or falls by the between-sample error at D / 2 from
-// the nearest, and so on into halves (midpoint displacement). Draws belong to the eighth of a cell that they
+// the nearest, and so on into halves (midpoint displacement), about a line that bends as the middles of cell
+// sides L do: (D / L)^2 of what those rise by. Draws belong to the eighth of a cell that they
 // lie in.
 #pragma once
 
@@ -41,6 +42,12 @@ struct FinePlace {
 enum class Fineness : std::uint8_t { kNone = 0, kHalves = 1, kQuarters = 3 };
 using FinePlaces = FinePlace[3];
 
+// From one node to the next, samples.
+inline constexpr double kNodeStep = 0.5;
+struct NodeStep {
+  double major, minor;
+};
+
 class FineGround {
  public:
   // With the base sample on the terrain's grid. Without `crossings` nothing departs between nodes.
@@ -51,10 +58,11 @@ class FineGround {
 
   // Ground taken from two nodes half a cell apart, a share `part` of the way from the first: what it departs
   // by from the line between them.
-  Departure across(const RayPlace&, double part) const;
+  Departure across(const RayPlace&, const NodeStep&, double part) const;
   // ... of ground taken from four nodes, at these shares of the way between them.
   Departure inside(const RayPlace&, double along, double across) const;
   float most_across(const RayPlace& place, double part) const { return most_ * spread_across(place, part); }
+  float rise_across(const RayPlace&, const NodeStep&, double part) const;
   // What departs between two places depends on how they step.
   const StepLaw& steps() const { return steps_; }
 
@@ -69,6 +77,8 @@ class FineGround {
   // Of ground half-way between two places, over the amplitude there; NaN where it depends on that.
   double per_amplitude(double half_m) const;
   float spread_across(const RayPlace&, double part) const;
+  float rise_along(const RayPlace& a, const RayPlace& b) const;
+  float rise(double row, double col, double rows, double cols) const;
   // Four samples.
   struct Square {
     int row, col, row1, col1;

@@ -69,7 +69,7 @@ class Clearances {
  private:
   static Sum drawn(double mean, const Departure& own) {
     const std::uint64_t draw = static_cast<std::uint64_t>(own.key.b) << 32 | own.key.a;
-    return {mean, {{draw, static_cast<double>(own.spread)}}};
+    return {mean + static_cast<double>(own.rise), {{draw, static_cast<double>(own.spread)}}};
   }
   Sum source(int n) const {
     const SampleDraw& source = line_.sources[static_cast<std::size_t>(n)];

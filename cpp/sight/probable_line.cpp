@@ -151,7 +151,10 @@ void LineInDoubt::find_fine(const FineGround& ground) {
       const auto share = [](double samples) { return 2 * samples - std::floor(2 * samples); };
       across.push_back(ground.inside(where[i], share(place.major), share(place.minor)));
     } else {
-      across.push_back(ground.across(where[i], place.nodes == 2 ? static_cast<double>(place.weight[1]) : 0));
+      const NodeStep step{kNodeStep * (place.node[1].major - place.node[0].major),
+                          kNodeStep * (place.node[1].minor - place.node[0].minor)};
+      across.push_back(
+          ground.across(where[i], step, place.nodes == 2 ? static_cast<double>(place.weight[1]) : 0));
     }
   }
   const auto halve = [&](int a, int b, const FinePlace& place) {

@@ -56,9 +56,9 @@ HeightRange ProbableView::eye_range() const {
     sum.low += part * one[0].low;
     sum.high += part * one[0].high;
   });
-  const float most = terrain_.largest_draw * departure_at_eye().spread;
-  const auto height = static_cast<float>(eye_.height);
-  return {sum.low - most + height, sum.high + most + height};
+  const Departure own = departure_at_eye();
+  const float most = terrain_.largest_draw * own.spread, lift = own.rise + static_cast<float>(eye_.height);
+  return {sum.low - most + lift, sum.high + most + lift};
 }
 
 // Of the ground there from what lies between the nodes.

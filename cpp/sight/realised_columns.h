@@ -56,11 +56,12 @@ struct HeightRange {
   float low, high;
 };
 
-// A number about 0.
+// A number about `rise`.
 struct Departure {
   DrawKey key, scale;
   float spread;
   DrawnTails tails;
+  float rise = 0;
 };
 
 // A number about 0 that other samples near share in part; `terrain` null: none.
@@ -168,13 +169,13 @@ auto RealisedColumns::node_of(int major, int minor, const Sample& sample, const 
 // `middle`(l) + what is drawn for each lane.
 SIGHTBOUND_INLINE void draw_about(const Departure& own, std::uint32_t first, const auto& middle, Lanes& out) {
   if (own.spread == 0) {
-    for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l);
+    for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l) + own.rise;
     return;
   }
   Lanes x;
   fill_normal(own.key, first, x);
   if (!own.tails.are_normal()) scale_tails(own.tails, own.scale, first, x);
-  for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l) + own.spread * x.v[l];
+  for (int l = 0; l < kLanes; ++l) out.v[l] = middle(l) + own.rise + own.spread * x.v[l];
 }
 
 // Adds what is drawn.
@@ -212,7 +213,7 @@ SIGHTBOUND_INLINE void draw_on_way(const Departure& own, const StepLaw& steps, s
   const auto level = static_cast<float>(steps.level.variance),
              more = static_cast<float>(steps.step.variance) - level;
   for (int l = 0; l < kLanes; ++l)
-    out.v[l] = middle(l) + own.spread * std::sqrt(level + more * step.v[l]) * x.v[l];
+    out.v[l] = middle(l) + own.rise + own.spread * std::sqrt(level + more * step.v[l]) * x.v[l];
 }
 
 SIGHTBOUND_INLINE void draw_between(const Departure& own, std::uint32_t first, const Lanes& a, const Lanes& b,

@@ -73,22 +73,22 @@ class Writer {
     const double minor_before = line > 0 ? fan_.minor(i, line - 1) : 0;
     if (line > 0 && fan_.is_inside(minor_before)) {
       if (const auto row = row_between(fan_.crossing(i, line - 1, minor_before), place))
-        plan_.rows.push_back(
-            between_nodes(row->place, row->part, node(line - 1, row->node), node(line, row->node), ray));
+        plan_.rows.push_back(between_nodes(row->place, {kNodeStep, 0}, row->part, node(line - 1, row->node),
+                                           node(line, row->node), ray));
     }
     const Fineness fineness = refinement_.from_eye(line);
-    SightPlan::Crossing crossing{between_nodes(place, 2 * minor - before, node(line, before),
+    SightPlan::Crossing crossing{between_nodes(place, {0, kNodeStep}, 2 * minor - before, node(line, before),
                                                node(line, fan_.node_behind(minor)), ray),
                                  add_fine(places_[at(i)], place, per_2r, fineness), fineness};
     plan_.crossings.push_back(crossing);
     places_[at(i)] = place;
   }
 
-  SightPlan::Place between_nodes(const RayPlace& place, double part, SightPlan::Slot a, SightPlan::Slot b,
-                                 std::uint32_t ray) const {
+  SightPlan::Place between_nodes(const RayPlace& place, const NodeStep& step, double part, SightPlan::Slot a,
+                                 SightPlan::Slot b, std::uint32_t ray) const {
     return {ray_slope(place.s, fan_.per_2r(static_cast<int>(ray))),
             static_cast<float>(part),
-            fine_.across(place, part),
+            fine_.across(place, step, part),
             a,
             b,
             ray};
