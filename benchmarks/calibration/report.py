@@ -101,7 +101,7 @@ def diagram(case, left, top):
 
     out = [f'<rect x="{left}" y="{top}" width="{SIZE}" height="{SIZE}" fill="#fbfbf8" stroke="#999"/>',
            f'<path d="M{x(0)} {y(0)} L{x(1)} {y(1)}" stroke="#bbb" stroke-dasharray="4 3"/>',
-           f'<text x="{left}" y="{top - 6}" font-size="10.5">{name_of(case)}</text>']
+           f'<text x="{left}" y="{top - 6}" font-size="{10.5 if len(name_of(case)) <= 28 else 8.5}">{name_of(case)}</text>']
     for text, at in (("0", 0), ("1", 1)):
         out.append(f'<text x="{x(at) - 3}" y="{top + SIZE + 12}" font-size="9" fill="#555">{text}</text>')
     for name in ("pointwise", "probable"):
