@@ -14,8 +14,8 @@ constexpr int kReach = 8;              // of the widest spacing
 constexpr int kTile = 32;              // samples: growth is measured on each by itself
 constexpr double kOfNextOctave = 0.5;  // share of its change that the first octave is expected to have
 constexpr double kOfTwists = 0.75;     // their share in the score
-// In units of what means do: no DEM of means had more than 3; walls along the grid, whose twists stand at corners
-// alone, have 5 and more.
+// In units of what means do: no DEM of means had more than 3; walls along the grid, whose twists stand at
+// corners alone, have 5 and more.
 constexpr double kMostOfMeans = 4;
 constexpr double kMostContinued = 0.2;
 constexpr double kLargestGain = 0.25;

@@ -90,11 +90,12 @@ TEST(Estimate, RoundingDoesNotHideTheGrowth) {
 
 // Most errors of rounded heights are exactly 0: that is no bare roof.
 TEST(Estimate, RoundingIsNotLearntAsTails) {
-  const auto terrain = [](int r, int c) { return 0.03 * hills(r, c, 0.9, 9); };
-  const Estimate rounded =
-      learnt(grid_from(400, 400, [&](int r, int c) { return std::round(terrain(r, c)); }));
-  EXPECT_GT(rounded.rounding_m, 0);
-  EXPECT_TRUE(rounded.steps.is_normal());
+  for (const double scale : {0.03, 0.1, 0.3, 1.0, 3.0}) {
+    const Estimate rounded =
+        learnt(grid_from(400, 400, [&](int r, int c) { return std::round(scale * hills(r, c, 0.9, 9)); }));
+    EXPECT_GT(rounded.rounding_m, 0);
+    EXPECT_TRUE(rounded.steps.is_normal()) << scale;
+  }
 }
 
 TEST(Estimate, SkipsHolesAndSpikes) {

@@ -3,6 +3,7 @@
 // drawn everywhere, fine ground included, the same is seen to the last bit.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -53,6 +54,7 @@ struct Case {
   float spread;  // of the samples
   bool holes, is_refined, is_learnt;
   bool is_steep = false;  // heavy tails, steps that count, errors that are correlated
+  bool is_bent = false;   // ridges between nodes rise by more than draws do
 };
 class ProbableViews : public ::testing::TestWithParam<Case> {};
 
@@ -70,6 +72,15 @@ TEST_P(ProbableViews, see_the_same_as_when_all_is_drawn) {
     ground.error.tails = Tails::kLaplace;
     ground.error.steps = {{0.3, 1.3}, {2.5, 0.2}, true};
     ground.error.noise = CorrelatedNoise(40, {10, 10});
+  }
+  if (test.is_bent) {
+    ground.error.ridge_gain = 1;
+    ground.error.amplitude = SampleField(0.002f);
+    ground.error.profile.half_spacing_m = 5;
+    for (int r = 0; r < kRows; ++r) {
+      for (int c = 0; c < kCols; ++c)
+        ground.heights.at(r, c) = static_cast<float>(5 * std::sin(0.6 * c) * std::cos(0.5 * r));
+    }
   }
   Progress progress;
   const Posterior behind = posterior(ground.heights, ground.error, Workers(1), progress);
@@ -98,7 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{0, 0, 0.2f, true, true, false}, Case{89, 20, 0, true, false, false},
                       Case{30.5, 69, 0.5f, false, false, false}, Case{45, 35, 0, true, true, true},
                       Case{0.4, 60.5, 0.1f, false, true, true},
-                      Case{45.3, 35.6, 0.2f, true, true, true, true}));
+                      Case{45.3, 35.6, 0.2f, true, true, true, true},
+                      Case{45.3, 35.6, 0, false, true, true, false, true}));
 
 }  // namespace
 }  // namespace sightbound
